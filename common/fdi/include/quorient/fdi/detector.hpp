@@ -1,0 +1,69 @@
+#pragma once
+
+#include "quorient/messages/identity.hpp"
+#include "quorient/messages/limits.hpp"
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+namespace quorient::fdi {
+
+/// One frame as a detector sees it.
+struct Measurement {
+    Identity identity;
+    double interval_s = 0;
+    std::span<const double> increment;      ///< z, one per axis of the cluster [rad; m/s]
+    AxisMask valid = 0;                     ///< axes with a usable value in this frame
+    std::span<const double> known_input{};  ///< e.g. the rudder angle [rad]
+};
+
+/// What one frame says, before confirmation and latching.
+enum class Outcome : std::uint8_t {
+    warming_up,
+    healthy,
+    suspect,    ///< a fault, not attributable with confidence
+    isolated,   ///< the faulty axes are named
+    ambiguous,  ///< a fault, and the sets that explain it
+    refused,    ///< the method's own rule gives no decision
+    blind,      ///< the data contradict every hypothesis
+};
+
+struct Assessment {
+    Outcome outcome = Outcome::warming_up;
+    AxisMask isolated = 0;  ///< named axes; under `suspect` the likeliest culprit, if there is one
+    std::array<AxisMask, max_candidates> candidate{};  ///< best first
+    std::uint8_t candidate_count = 0;
+    bool candidates_truncated = false;
+    double statistic = 0;
+    double threshold = 0;  ///< in the statistic's unit
+    std::uint64_t onset = never;  ///< first sequence that looks contaminated, where the method estimates it
+    std::array<double, max_axes> residual{};  ///< in the unit of the measurement
+    std::array<double, max_axes> bound{};
+
+    void add_candidate(AxisMask set)
+    {
+        if (candidate_count < max_candidates) candidate[candidate_count++] = set;
+        else candidates_truncated = true;
+    }
+};
+
+/// One detection method on one cluster. Frames come in order; nothing is allocated per frame.
+class Detector {
+public:
+    virtual ~Detector() = default;
+
+    /// Overwrites `assessment` whole. Axes outside `measurement.valid` and excluded axes are not used and never blamed.
+    virtual void assess(const Measurement& measurement, Assessment& assessment) = 0;
+
+    /// Works without these axes from the next frame on (all of them, not in addition to earlier ones).
+    virtual void exclude(AxisMask excluded) = 0;
+
+    /// How many further simultaneous axis faults can be detected with the axes that are left.
+    virtual unsigned detectable_remaining() const = 0;
+
+    /// Forgets everything learnt from earlier frames; exclusions stay.
+    virtual void reset() {}
+};
+
+}  // namespace quorient::fdi
