@@ -1,6 +1,7 @@
 #pragma once
 
 #include "quorient/messages/cluster_description.hpp"
+#include "quorient/messages/codes.hpp"
 #include "quorient/messages/limits.hpp"
 
 #include <Eigen/Core>
