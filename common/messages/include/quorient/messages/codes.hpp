@@ -43,7 +43,7 @@ enum class LaneExclusion : std::uint8_t {
     uncorroborated = 4,  // isolated axes that no majority of detectors reports
     outvoted = 5,        // keeps axes that a corroborated group has isolated
     untrusted = 6,
-    invalid = 7,         // not finite, or not a unit quaternion
+    invalid = 7,  // not finite, or not a unit quaternion
 };
 
 enum class Severity : std::uint8_t { unknown = 0, info = 1, warning_low = 2, warning_high = 3, fatal = 4 };
@@ -105,19 +105,19 @@ enum class CommandAction : std::uint8_t {
 
 enum class FaultKind : std::uint8_t {
     unknown = 0,
-    bias = 1,         // rad/s
-    ramp = 2,         // rad/s^2
-    scale = 3,        // factor
-    stuck = 4,        // the last value repeats
+    bias = 1,   // rad/s
+    ramp = 2,   // rad/s^2
+    scale = 3,  // factor
+    stuck = 4,  // the last value repeats
     zero = 5,
-    rail = 6,         // the axis's range
+    rail = 6,  // the axis's range
     sign = 7,
     nan = 8,
-    noise = 9,        // multiple of the axis's sigma
-    oscillation = 10, // rad/s, with frequency_hz
-    dropout = 11,     // fraction of frames without a sample
-    delay = 12,       // seconds
-    spike = 13,       // rad/s, with period_s
+    noise = 9,         // multiple of the axis's sigma
+    oscillation = 10,  // rad/s, with frequency_hz
+    dropout = 11,      // fraction of frames without a sample
+    delay = 12,        // seconds
+    spike = 13,        // rad/s, with period_s
 };
 
 }  // namespace quorient

@@ -24,7 +24,7 @@ struct FaultVerdict {
     std::uint64_t sequence = 0;
     std::int64_t sample_time_ns = 0;
     std::array<std::uint64_t, max_axes> excluded_from = detail::all_never();  ///< first contaminated sequence
-    double statistic = 0;  ///< of the method, and its threshold in the same unit
+    double statistic = 0;                                                     ///< of the method, and its threshold in the same unit
     double threshold = 0;
     std::array<double, max_axes> residual{};  ///< [rad; m/s]
     std::array<double, max_axes> bound{};     ///< what the residual stays below while the axis is healthy, same unit

@@ -15,10 +15,10 @@ struct HealthEvent {
     std::uint64_t event_number = 0;  ///< counts the source's events from 1
     std::uint64_t request = 0;       ///< of the FaultCommand that it answers, 0 = none
     std::uint32_t unit = 0;
-    std::uint32_t source = 0;  ///< service id
-    std::uint32_t axes = 0;    ///< AxisMask that the event is about
-    std::uint8_t code = 0;     ///< EventCode
-    std::uint8_t severity = 0; ///< Severity
+    std::uint32_t source = 0;   ///< service id
+    std::uint32_t axes = 0;     ///< AxisMask that the event is about
+    std::uint8_t code = 0;      ///< EventCode
+    std::uint8_t severity = 0;  ///< Severity
     std::array<std::uint8_t, 2> padding{};
     Name<32> source_name{};
     Name<160> text{};

@@ -22,11 +22,20 @@ using AxisMask = std::uint32_t;
 using LaneMask = std::uint32_t;
 
 /// The mask of the first `count` axes.
-constexpr AxisMask all_axes(std::size_t count) { return count >= 32 ? ~AxisMask{0} : (AxisMask{1} << count) - 1; }
+constexpr AxisMask all_axes(std::size_t count)
+{
+    return count >= 32 ? ~AxisMask{0} : (AxisMask{1} << count) - 1;
+}
 
-constexpr AxisMask axis_bit(std::size_t axis) { return AxisMask{1} << axis; }
+constexpr AxisMask axis_bit(std::size_t axis)
+{
+    return AxisMask{1} << axis;
+}
 
-constexpr bool has_axis(AxisMask mask, std::size_t axis) { return (mask >> axis & 1U) != 0; }
+constexpr bool has_axis(AxisMask mask, std::size_t axis)
+{
+    return (mask >> axis & 1U) != 0;
+}
 
 /// excluded_from of an axis that was never excluded.
 inline constexpr std::uint64_t never = std::numeric_limits<std::uint64_t>::max();

@@ -1,0 +1,251 @@
+#include "quorient/bus/cyclonedds_bus.hpp"
+
+#include "types.hpp"
+
+#include <dds/dds.h>
+#include <dds/ddsc/dds_data_allocator.h>
+#include <dds/ddsc/dds_loan_api.h>
+#include <fmt/format.h>
+#include <cstring>
+#include <map>
+#include <string>
+#include <utility>
+
+namespace quorient::bus {
+
+namespace {
+
+/// Deletes a DDS entity with its owner.
+class Entity {
+public:
+    explicit Entity(dds_entity_t handle) : handle_(handle) {}
+    ~Entity()
+    {
+        if (handle_ > 0) dds_delete(handle_);
+    }
+    Entity(Entity&& other) noexcept : handle_(std::exchange(other.handle_, 0)) {}
+    Entity& operator=(Entity&& other) noexcept
+    {
+        std::swap(handle_, other.handle_);
+        return *this;
+    }
+    Entity(const Entity&) = delete;
+    Entity& operator=(const Entity&) = delete;
+
+    dds_entity_t handle() const { return handle_; }
+
+private:
+    dds_entity_t handle_;
+};
+
+Entity checked(dds_entity_t handle, const std::string& what)
+{
+    if (handle < 0) throw Error(fmt::format("Cyclone DDS: {}: {}", what, dds_strretcode(-handle)));
+    return Entity{handle};
+}
+
+struct QosDeleter {
+    void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
+};
+using QosHandle = std::unique_ptr<dds_qos_t, QosDeleter>;
+
+constexpr dds_duration_t reliable_blocking = DDS_MSECS(100);
+
+QosHandle to_qos(const Qos& qos, const WriterOptions* writer)
+{
+    QosHandle result{dds_create_qos()};
+    auto* q = result.get();
+    dds_qset_reliability(q, qos.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, reliable_blocking);
+    dds_qset_durability(q, qos.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+    dds_qset_history(q, DDS_HISTORY_KEEP_LAST, qos.depth);
+    if (qos.transient_local) dds_qset_durability_service(q, 0, DDS_HISTORY_KEEP_LAST, qos.depth, -1, -1, -1);
+    if (qos.exclusive) {
+        dds_qset_ownership(q, DDS_OWNERSHIP_EXCLUSIVE);
+        if (writer) {
+            dds_qset_ownership_strength(q, writer->strength);
+            dds_qset_liveliness(q, DDS_LIVELINESS_MANUAL_BY_TOPIC, static_cast<dds_duration_t>(writer->lease_s * 1e9));
+        }
+    }
+    return result;
+}
+
+std::string_view policy_name(std::uint32_t id)
+{
+    switch (id) {
+        case DDS_DURABILITY_QOS_POLICY_ID:
+            return "DURABILITY";
+        case DDS_DEADLINE_QOS_POLICY_ID:
+            return "DEADLINE";
+        case DDS_OWNERSHIP_QOS_POLICY_ID:
+            return "OWNERSHIP";
+        case DDS_LIVELINESS_QOS_POLICY_ID:
+            return "LIVELINESS";
+        case DDS_RELIABILITY_QOS_POLICY_ID:
+            return "RELIABILITY";
+        case DDS_PARTITION_QOS_POLICY_ID:
+            return "PARTITION";
+        case DDS_DATA_REPRESENTATION_QOS_POLICY_ID:
+            return "DATA_REPRESENTATION";
+        default:
+            return "another policy";
+    }
+}
+
+Transport transport_of(dds_entity_t endpoint)
+{
+    return dds_is_shared_memory_available(endpoint) ? Transport::iceoryx : Transport::udp;
+}
+
+class CycloneWriter final : public Writer {
+public:
+    CycloneWriter(Entity writer, std::size_t size)
+        : writer_(std::move(writer)), size_(size), loans_(dds_is_loan_available(writer_.handle()))
+    {
+    }
+
+    bool write(const void* message) override
+    {
+        if (!loans_) return dds_write(writer_.handle(), message) == DDS_RETCODE_OK;
+        void* sample = nullptr;
+        if (dds_loan_sample(writer_.handle(), &sample) != DDS_RETCODE_OK) return false;
+        std::memcpy(sample, message, size_);
+        return dds_write(writer_.handle(), sample) == DDS_RETCODE_OK;
+    }
+
+    void assert_liveliness() override { dds_assert_liveliness(writer_.handle()); }
+
+    EndpointStatus status() override
+    {
+        dds_publication_matched_status_t matched{};
+        dds_offered_incompatible_qos_status_t incompatible{};
+        dds_get_publication_matched_status(writer_.handle(), &matched);
+        dds_get_offered_incompatible_qos_status(writer_.handle(), &incompatible);
+        return {matched.current_count, incompatible.total_count, policy_name(incompatible.last_policy_id), transport_of(writer_.handle())};
+    }
+
+private:
+    Entity writer_;
+    std::size_t size_;
+    bool loans_;
+};
+
+class CycloneReader final : public Reader {
+public:
+    explicit CycloneReader(Entity reader) : reader_(std::move(reader)) {}
+
+    bool take(void* message) override
+    {
+        dds_sample_info_t info{};
+        void* samples[1] = {message};
+        while (dds_take(reader_.handle(), samples, &info, 1, 1) == 1) {
+            if (info.valid_data) return true;
+        }
+        return false;
+    }
+
+    EndpointStatus status() override
+    {
+        dds_subscription_matched_status_t matched{};
+        dds_requested_incompatible_qos_status_t incompatible{};
+        dds_get_subscription_matched_status(reader_.handle(), &matched);
+        dds_get_requested_incompatible_qos_status(reader_.handle(), &incompatible);
+        return {matched.current_count, incompatible.total_count, policy_name(incompatible.last_policy_id), transport_of(reader_.handle())};
+    }
+
+private:
+    Entity reader_;
+};
+
+class CycloneBus final : public Bus {
+public:
+    CycloneBus(Entity domain, Entity participant)
+        : domain_(std::move(domain)),
+          participant_(std::move(participant)),
+          waitset_(checked(dds_create_waitset(participant_.handle()), "wait set"))
+    {
+    }
+
+    void wait(std::int64_t timeout_ns) override
+    {
+        dds_attach_t triggered[1];
+        dds_waitset_wait(waitset_.handle(), triggered, 1, timeout_ns);
+    }
+
+    Vendor vendor() const override { return Vendor::cyclonedds; }
+
+private:
+    std::unique_ptr<Writer> make_writer(const TopicSpec& topic, const WriterOptions& options) override
+    {
+        const auto qos = to_qos(topic.qos, &options);
+        return std::make_unique<CycloneWriter>(
+            checked(dds_create_writer(participant_.handle(), topic_of(topic), qos.get(), nullptr), topic.name), topic.size);
+    }
+
+    std::unique_ptr<Reader> make_reader(const TopicSpec& topic) override
+    {
+        const auto qos = to_qos(topic.qos, nullptr);
+        auto reader = checked(dds_create_reader(participant_.handle(), topic_of(topic), qos.get(), nullptr), topic.name);
+        const auto condition = dds_create_readcondition(reader.handle(), DDS_ANY_STATE);
+        if (condition < 0 || dds_waitset_attach(waitset_.handle(), condition, 0) < 0)
+            throw Error(fmt::format("Cyclone DDS: {}: cannot wait for data", topic.name));
+        return std::make_unique<CycloneReader>(std::move(reader));
+    }
+
+    dds_entity_t topic_of(const TopicSpec& spec)
+    {
+        const auto known = topics_.find(spec.name);
+        if (known != topics_.end()) return known->second;
+        const auto topic = dds_create_topic(participant_.handle(), &cyclonedds::descriptor_of(spec.type), spec.name, nullptr, nullptr);
+        if (topic < 0) throw Error(fmt::format("Cyclone DDS: topic {}: {}", spec.name, dds_strretcode(-topic)));
+        return topics_.emplace(spec.name, topic).first->second;
+    }
+
+    Entity domain_;  // outlives the participant, which takes everything it made with it
+    Entity participant_;
+    Entity waitset_;
+    std::map<std::string, dds_entity_t> topics_;
+};
+
+/// As Cyclone wants it. GenerateKeyhash: without it Fast DDS does not see a Cyclone endpoint leave. The short heartbeat and
+/// nack delays repair a lost sample before anybody's patience ends.
+std::string configuration(const Settings& settings)
+{
+    std::string interface;
+    if (!settings.interface.empty()) {
+        const bool address = settings.interface.find('.') != std::string::npos;
+        interface = fmt::format(R"(<Interfaces><NetworkInterface {}="{}" multicast="{}"/></Interfaces>)", address ? "address" : "name",
+                                settings.interface, settings.peers.empty());
+    }
+    std::string peers;
+    for (const auto& peer : settings.peers) peers += fmt::format(R"(<Peer address="{}"/>)", peer);
+    const bool unicast = !settings.peers.empty();
+    return fmt::format(
+        "<CycloneDDS><Domain Id=\"any\"><General>{}<AllowMulticast>{}</AllowMulticast></General>"
+        "<Discovery>{}<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>60</MaxAutoParticipantIndex></Discovery>"
+        "<Internal><GenerateKeyhash>true</GenerateKeyhash><NackDelay>1ms</NackDelay>"
+        "<HeartbeatInterval min=\"1ms\" minsched=\"2ms\" max=\"100ms\">{}us</HeartbeatInterval></Internal>"
+        "<SharedMemory><Enable>{}</Enable><LogLevel>warn</LogLevel></SharedMemory></Domain></CycloneDDS>",
+        interface, !unicast, unicast ? fmt::format("<Peers>{}</Peers>", peers) : std::string{},
+        static_cast<long>(settings.heartbeat_s * 1e6), settings.transport == Transport::iceoryx);
+}
+
+}  // namespace
+
+tl::expected<std::unique_ptr<Bus>, std::string> open_cyclonedds(const Settings& settings)
+{
+    const auto domain = dds_create_domain(settings.domain, configuration(settings).c_str());
+    if (domain < 0) return tl::make_unexpected(fmt::format("Cyclone DDS: domain {}: {}", settings.domain, dds_strretcode(-domain)));
+    Entity owned_domain{domain};
+
+    const QosHandle qos{dds_create_qos()};
+    dds_qset_entity_name(qos.get(), settings.participant.c_str());
+    const auto participant = dds_create_participant(settings.domain, qos.get(), nullptr);
+    if (participant < 0) return tl::make_unexpected(fmt::format("Cyclone DDS: participant: {}", dds_strretcode(-participant)));
+    try {
+        return std::make_unique<CycloneBus>(std::move(owned_domain), Entity{participant});
+    } catch (const Error& error) {
+        return tl::make_unexpected(std::string{error.what()});
+    }
+}
+
+}  // namespace quorient::bus

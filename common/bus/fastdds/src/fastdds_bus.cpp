@@ -1,0 +1,287 @@
+#include "quorient/bus/fastdds_bus.hpp"
+
+#include "quorient/bus/interfaces.hpp"
+#include "types.hpp"
+
+#include <fastrtps/utils/IPLocator.h>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fmt/format.h>
+#include <cstring>
+#include <fastdds/dds/core/condition/WaitSet.hpp>
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/log/Log.hpp>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <map>
+
+namespace quorient::bus {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastdds::rtps;
+using eprosima::fastrtps::Duration_t;
+using eprosima::fastrtps::types::ReturnCode_t;
+
+namespace {
+
+Duration_t seconds(double s)
+{
+    return {static_cast<std::int32_t>(s), static_cast<std::uint32_t>((s - static_cast<std::int32_t>(s)) * 1e9)};
+}
+
+std::string_view policy_name(dds::QosPolicyId_t id)
+{
+    switch (id) {
+        case dds::DURABILITY_QOS_POLICY_ID:
+            return "DURABILITY";
+        case dds::DEADLINE_QOS_POLICY_ID:
+            return "DEADLINE";
+        case dds::OWNERSHIP_QOS_POLICY_ID:
+            return "OWNERSHIP";
+        case dds::LIVELINESS_QOS_POLICY_ID:
+            return "LIVELINESS";
+        case dds::RELIABILITY_QOS_POLICY_ID:
+            return "RELIABILITY";
+        case dds::PARTITION_QOS_POLICY_ID:
+            return "PARTITION";
+        case dds::DATAREPRESENTATION_QOS_POLICY_ID:
+            return "DATA_REPRESENTATION";
+        default:
+            return "another policy";
+    }
+}
+
+/// What both ends of a topic share. Resource limits of 0 are "no limit": the default of ten instances is fewer than a system has services.
+template <class EndpointQos>
+void apply(const Qos& qos, const Settings& settings, EndpointQos& endpoint)
+{
+    endpoint.reliability().kind = qos.reliable ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
+    endpoint.durability().kind = qos.transient_local ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
+    endpoint.history().kind = dds::KEEP_LAST_HISTORY_QOS;
+    endpoint.history().depth = qos.depth;
+    endpoint.resource_limits().max_samples = 0;
+    endpoint.resource_limits().max_instances = 0;
+    endpoint.resource_limits().max_samples_per_instance = 0;
+    endpoint.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+    endpoint.ownership().kind = qos.exclusive ? dds::EXCLUSIVE_OWNERSHIP_QOS : dds::SHARED_OWNERSHIP_QOS;
+    if (settings.transport != Transport::shared_memory) endpoint.data_sharing().off();
+}
+
+class FastWriter final : public Writer {
+public:
+    FastWriter(dds::Publisher* publisher, dds::DataWriter* writer, dds::TypeSupport type, std::size_t size, Transport transport)
+        : publisher_(publisher), writer_(writer), type_(std::move(type)), sample_(type_.create_data()), size_(size), transport_(transport)
+    {
+    }
+    ~FastWriter() override
+    {
+        publisher_->delete_datawriter(writer_);
+        type_.delete_data(sample_);
+    }
+
+    bool write(const void* message) override
+    {
+        std::memcpy(sample_, message, size_);
+        return writer_->write(sample_);
+    }
+
+    void assert_liveliness() override { writer_->assert_liveliness(); }
+
+    EndpointStatus status() override
+    {
+        dds::PublicationMatchedStatus matched;
+        dds::OfferedIncompatibleQosStatus incompatible;
+        writer_->get_publication_matched_status(matched);
+        writer_->get_offered_incompatible_qos_status(incompatible);
+        return {static_cast<std::uint32_t>(matched.current_count), incompatible.total_count, policy_name(incompatible.last_policy_id),
+                transport_};
+    }
+
+private:
+    dds::Publisher* publisher_;
+    dds::DataWriter* writer_;
+    dds::TypeSupport type_;
+    void* sample_;
+    std::size_t size_;
+    Transport transport_;
+};
+
+class FastReader final : public Reader {
+public:
+    FastReader(dds::Subscriber* subscriber, dds::DataReader* reader, dds::WaitSet& waitset, dds::TypeSupport type, std::size_t size,
+               Transport transport)
+        : subscriber_(subscriber),
+          reader_(reader),
+          waitset_(waitset),
+          type_(std::move(type)),
+          sample_(type_.create_data()),
+          size_(size),
+          transport_(transport)
+    {
+        reader_->get_statuscondition().set_enabled_statuses(dds::StatusMask::data_available());
+        waitset_.attach_condition(reader_->get_statuscondition());
+    }
+    ~FastReader() override
+    {
+        waitset_.detach_condition(reader_->get_statuscondition());
+        subscriber_->delete_datareader(reader_);
+        type_.delete_data(sample_);
+    }
+
+    bool take(void* message) override
+    {
+        dds::SampleInfo info;
+        while (reader_->take_next_sample(sample_, &info) == ReturnCode_t::RETCODE_OK) {
+            if (!info.valid_data) continue;
+            std::memcpy(message, sample_, size_);
+            return true;
+        }
+        return false;
+    }
+
+    EndpointStatus status() override
+    {
+        dds::SubscriptionMatchedStatus matched;
+        dds::RequestedIncompatibleQosStatus incompatible;
+        reader_->get_subscription_matched_status(matched);
+        reader_->get_requested_incompatible_qos_status(incompatible);
+        return {static_cast<std::uint32_t>(matched.current_count), incompatible.total_count, policy_name(incompatible.last_policy_id),
+                transport_};
+    }
+
+private:
+    dds::Subscriber* subscriber_;
+    dds::DataReader* reader_;
+    dds::WaitSet& waitset_;
+    dds::TypeSupport type_;
+    void* sample_;
+    std::size_t size_;
+    Transport transport_;
+};
+
+class FastBus final : public Bus {
+public:
+    FastBus(const Settings& settings, dds::DomainParticipant* participant)
+        : settings_(settings),
+          participant_(participant),
+          publisher_(participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT)),
+          subscriber_(participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT))
+    {
+    }
+    ~FastBus() override
+    {
+        participant_->delete_contained_entities();
+        dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+    }
+
+    void wait(std::int64_t timeout_ns) override
+    {
+        triggered_.clear();
+        waitset_.wait(triggered_, seconds(static_cast<double>(timeout_ns) * 1e-9));
+    }
+
+    Vendor vendor() const override { return Vendor::fastdds; }
+
+private:
+    std::unique_ptr<Writer> make_writer(const TopicSpec& topic, const WriterOptions& options) override
+    {
+        dds::DataWriterQos qos = publisher_->get_default_datawriter_qos();
+        apply(topic.qos, settings_, qos);
+        qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
+        // The default heartbeat of 3 s leaves a Cyclone reader that matched late without its history.
+        qos.reliable_writer_qos().times.heartbeatPeriod = seconds(settings_.heartbeat_s);
+        qos.reliable_writer_qos().times.nackResponseDelay = seconds(0);
+        qos.reliable_writer_qos().times.initialHeartbeatDelay = seconds(0);
+        if (topic.qos.exclusive) {
+            qos.ownership_strength().value = static_cast<std::uint32_t>(options.strength);
+            qos.liveliness().kind = dds::MANUAL_BY_TOPIC_LIVELINESS_QOS;
+            qos.liveliness().lease_duration = seconds(options.lease_s);
+            qos.liveliness().announcement_period = seconds(options.lease_s / 2);
+        }
+        auto [type, entity] = topic_of(topic);
+        auto* writer = publisher_->create_datawriter(entity, qos);
+        if (!writer) throw Error(fmt::format("Fast DDS: cannot write {}", topic.name));
+        return std::make_unique<FastWriter>(publisher_, writer, type, topic.size, settings_.transport);
+    }
+
+    std::unique_ptr<Reader> make_reader(const TopicSpec& topic) override
+    {
+        dds::DataReaderQos qos = subscriber_->get_default_datareader_qos();
+        apply(topic.qos, settings_, qos);
+        qos.reliable_reader_qos().times.heartbeatResponseDelay = seconds(0);
+        auto [type, entity] = topic_of(topic);
+        auto* reader = subscriber_->create_datareader(entity, qos);
+        if (!reader) throw Error(fmt::format("Fast DDS: cannot read {}", topic.name));
+        return std::make_unique<FastReader>(subscriber_, reader, waitset_, type, topic.size, settings_.transport);
+    }
+
+    std::pair<dds::TypeSupport, dds::Topic*> topic_of(const TopicSpec& spec)
+    {
+        const auto type = fastdds::type_support_of(spec.type);
+        auto& entity = topics_[spec.name];
+        if (!entity) {
+            type.register_type(participant_);
+            entity = participant_->create_topic(spec.name, type.get_type_name(), dds::TOPIC_QOS_DEFAULT);
+        }
+        if (!entity) throw Error(fmt::format("Fast DDS: cannot make topic {}", spec.name));
+        return {type, entity};
+    }
+
+    Settings settings_;
+    dds::DomainParticipant* participant_;
+    dds::Publisher* publisher_;
+    dds::Subscriber* subscriber_;
+    dds::WaitSet waitset_;
+    dds::ConditionSeq triggered_;
+    std::map<std::string, dds::Topic*> topics_;
+};
+
+/// Ports that a peer's participants listen on for unicast discovery [RTPS 9.6.1.1, default port mapping].
+constexpr std::uint32_t participants_per_peer = 30;
+
+void add_peer(const std::string& address, std::uint32_t domain, eprosima::fastrtps::rtps::LocatorList_t& peers)
+{
+    for (std::uint32_t participant = 0; participant < participants_per_peer; ++participant) {
+        eprosima::fastrtps::rtps::Locator_t locator;
+        eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, address);
+        locator.port = 7400 + 250 * domain + 10 + 2 * participant;
+        peers.push_back(locator);
+    }
+}
+
+void add_transports(const Settings& settings, dds::TransportConfigQos& transports)
+{
+    transports.use_builtin_transports = false;
+    const auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
+    if (!settings.interface.empty()) udp->interfaceWhiteList = addresses_of(settings.interface);
+    transports.user_transports.push_back(udp);
+    if (settings.transport == Transport::shared_memory)
+        transports.user_transports.push_back(std::make_shared<rtps::SharedMemTransportDescriptor>());
+}
+
+}  // namespace
+
+tl::expected<std::unique_ptr<Bus>, std::string> open_fastdds(const Settings& settings)
+{
+    dds::Log::SetVerbosity(dds::Log::Error);
+    dds::DomainParticipantQos qos;
+    qos.name(settings.participant);
+    add_transports(settings, qos.transport());
+    auto& builtin = qos.wire_protocol().builtin;
+    // Peers that start together find each other without waiting for the 3 s announcement.
+    builtin.discovery_config.initial_announcements.count = 50;
+    builtin.discovery_config.initial_announcements.period = seconds(0.1);
+    builtin.discovery_config.leaseDuration_announcementperiod = seconds(1);
+    builtin.discovery_config.leaseDuration = seconds(10);
+    for (const auto& peer : settings.peers) add_peer(peer, settings.domain, builtin.initialPeersList);
+
+    auto* participant = dds::DomainParticipantFactory::get_instance()->create_participant(settings.domain, qos);
+    if (!participant) return tl::make_unexpected(fmt::format("Fast DDS: cannot join domain {}", settings.domain));
+    return std::make_unique<FastBus>(settings, participant);
+}
+
+}  // namespace quorient::bus

@@ -1,0 +1,106 @@
+#pragma once
+
+#include "quorient/bus/settings.hpp"
+#include "quorient/bus/topics.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+#include <utility>
+
+namespace quorient::bus {
+
+/// A vendor refused to make an entity: an environment's fault, at start-up only.
+class Error : public std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// How an endpoint stands with its peers.
+struct EndpointStatus {
+    std::uint32_t matched = 0;
+    std::uint32_t incompatible = 0;            ///< peers that asked for a QoS that this endpoint does not have, in total
+    std::string_view policy{};                 ///< name of the policy of the latest of them
+    Transport transport = Transport::unknown;  ///< really in use
+};
+
+/// What a vendor implements. One thread uses a bus and all that it made.
+class Writer {
+public:
+    virtual ~Writer() = default;
+    /// @param message  the plain struct of the topic. @returns false where the vendor refused it.
+    virtual bool write(const void* message) = 0;
+    /// Says that this writer is alive (exclusive topics).
+    virtual void assert_liveliness() {}
+    virtual EndpointStatus status() = 0;
+};
+
+class Reader {
+public:
+    virtual ~Reader() = default;
+    /// Takes the oldest sample. @returns false when there is none.
+    virtual bool take(void* message) = 0;
+    virtual EndpointStatus status() = 0;
+};
+
+template <class Message>
+class Publisher {
+public:
+    explicit Publisher(std::unique_ptr<Writer> writer) : writer_(std::move(writer)) {}
+
+    bool publish(const Message& message) { return writer_->write(&message); }
+    void assert_liveliness() { writer_->assert_liveliness(); }
+    EndpointStatus status() { return writer_->status(); }
+
+private:
+    std::unique_ptr<Writer> writer_;
+};
+
+template <class Message>
+class Subscription {
+public:
+    explicit Subscription(std::unique_ptr<Reader> reader) : reader_(std::move(reader)) {}
+
+    bool take(Message& message) { return reader_->take(&message); }
+    EndpointStatus status() { return reader_->status(); }
+
+private:
+    std::unique_ptr<Reader> reader_;
+};
+
+/// Typed publish and subscribe over one vendor.
+class Bus {
+public:
+    virtual ~Bus() = default;
+
+    /// @throws Error where the vendor refuses the entity.
+    template <class Message>
+    Publisher<Message> advertise(const Topic<Message>& topic, const WriterOptions& options = {})
+    {
+        return Publisher<Message>{make_writer(topic.spec, options)};
+    }
+
+    /// @throws Error where the vendor refuses the entity.
+    template <class Message>
+    Subscription<Message> subscribe(const Topic<Message>& topic)
+    {
+        return Subscription<Message>{make_reader(topic.spec)};
+    }
+
+    /// Blocks until a reader of this bus may have data, or the time is over. May return early.
+    virtual void wait(std::int64_t timeout_ns) = 0;
+
+    virtual Vendor vendor() const = 0;
+
+private:
+    virtual std::unique_ptr<Writer> make_writer(const TopicSpec& topic, const WriterOptions& options) = 0;
+    virtual std::unique_ptr<Reader> make_reader(const TopicSpec& topic) = 0;
+};
+
+/// Joins the bus that `settings` names. Vendor::local makes a bus that nobody else shares (see local_bus.hpp for a shared one).
+/// @returns every problem found before the vendor is touched, or the vendor's own refusal, one per line.
+tl::expected<std::unique_ptr<Bus>, std::string> open(const Settings& settings);
+
+}  // namespace quorient::bus

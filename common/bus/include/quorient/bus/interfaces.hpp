@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace quorient::bus {
+
+/// The IPv4 addresses of this host's interface `which`: its name, its own address, or the base address of its subnet
+/// (containers know their subnets, not their interfaces' names). Empty where there is none.
+std::vector<std::string> addresses_of(std::string_view which);
+
+/// The names of all interfaces that have an IPv4 address.
+std::vector<std::string> interface_names();
+
+bool is_ipv4_address(const std::string& text);
+
+}  // namespace quorient::bus

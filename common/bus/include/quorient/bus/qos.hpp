@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+
+namespace quorient::bus {
+
+/// The part of DDS's quality of service that Quorient uses. Who may set what, and why: idl/README.md.
+struct Qos {
+    bool reliable = true;
+    bool transient_local = false;  ///< a late joiner gets the history at once
+    std::int32_t depth = 64;       ///< KEEP_LAST
+    bool exclusive = false;        ///< EXCLUSIVE ownership with MANUAL_BY_TOPIC liveliness: fails over between writers
+};
+
+/// What is known only when a system is put together.
+struct WriterOptions {
+    std::int32_t strength = 0;  ///< of an exclusive writer
+    double lease_s = 0.05;      ///< of an exclusive writer's liveliness
+};
+
+}  // namespace quorient::bus

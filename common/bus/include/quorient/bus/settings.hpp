@@ -1,0 +1,36 @@
+#pragma once
+
+#include "quorient/messages/codes.hpp"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+#include <vector>
+
+namespace quorient::bus {
+
+/// How one process joins the bus.
+struct Settings {
+    Vendor vendor = Vendor::cyclonedds;
+    std::uint32_t domain = 0;
+    std::string interface = "lo";          ///< name, IPv4 address, or subnet base address; empty = the vendor's choice
+    std::vector<std::string> peers;        ///< IPv4 addresses for unicast discovery; empty = multicast
+    Transport transport = Transport::udp;  ///< udp, shared_memory (Fast DDS) or iceoryx (Cyclone DDS)
+    std::string participant;               ///< name shown to other tools
+    double heartbeat_s = 0.0025;           ///< of reliable writers: at most half a frame interval
+    bool security = false;                 ///< DDS Security asked for; refused together with shared memory
+};
+
+/// @returns an error that lists the words, e.g. for "opendds".
+tl::expected<Vendor, std::string> vendor_from(std::string_view word);
+tl::expected<Transport, std::string> transport_from(std::string_view word);
+std::string_view to_string(Vendor vendor);
+std::string_view to_string(Transport transport);
+
+/// Everything that can be told wrong before a participant exists: domain above 230, no such interface, a peer that is no address,
+/// a transport that the vendor does not have, shared memory together with security, iceoryx without RouDi.
+/// @returns one line per problem; empty when all is well.
+std::vector<std::string> problems(const Settings& settings);
+
+}  // namespace quorient::bus

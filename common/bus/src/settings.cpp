@@ -1,0 +1,101 @@
+#include "quorient/bus/settings.hpp"
+
+#include "quorient/bus/interfaces.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace quorient::bus {
+
+namespace {
+
+constexpr std::array vendors{std::pair{Vendor::fastdds, "fastdds"}, std::pair{Vendor::cyclonedds, "cyclonedds"},
+                             std::pair{Vendor::local, "local"}};
+constexpr std::array transports{std::pair{Transport::udp, "udp"}, std::pair{Transport::shared_memory, "shm"},
+                                std::pair{Transport::iceoryx, "iceoryx"}, std::pair{Transport::in_process, "in-process"}};
+
+/// Above this domain the RTPS ports leave the range of UDP [RTPS 9.6.1.1].
+constexpr std::uint32_t highest_domain = 230;
+
+/// Where RouDi 2.0 listens for runtimes that register.
+constexpr const char* roudi_socket = "/tmp/roudi";
+
+/// Cyclone would wait 60 s for a RouDi that is not there, deaf to SIGTERM; so ask first.
+bool roudi_answers()
+{
+    const int probe = ::socket(AF_UNIX, SOCK_DGRAM, 0);
+    if (probe < 0) return false;
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::strncpy(address.sun_path, roudi_socket, sizeof address.sun_path - 1);
+    const bool connected = ::connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+    ::close(probe);
+    return connected;
+}
+
+}  // namespace
+
+tl::expected<Vendor, std::string> vendor_from(std::string_view word)
+{
+    for (const auto& [vendor, name] : vendors) {
+        if (word == name) return vendor;
+    }
+    return tl::make_unexpected(fmt::format("unknown DDS vendor '{}'; known are fastdds, cyclonedds and local", word));
+}
+
+tl::expected<Transport, std::string> transport_from(std::string_view word)
+{
+    for (const auto& [transport, name] : transports) {
+        if (word == name && transport != Transport::in_process) return transport;
+    }
+    return tl::make_unexpected(fmt::format("unknown transport '{}'; known are udp, shm (Fast DDS) and iceoryx (Cyclone DDS)", word));
+}
+
+std::string_view to_string(Vendor vendor)
+{
+    for (const auto& [known, name] : vendors) {
+        if (known == vendor) return name;
+    }
+    return "unknown";
+}
+
+std::string_view to_string(Transport transport)
+{
+    for (const auto& [known, name] : transports) {
+        if (known == transport) return name;
+    }
+    return "unknown";
+}
+
+std::vector<std::string> problems(const Settings& settings)
+{
+    std::vector<std::string> found;
+    if (settings.vendor == Vendor::local) return found;
+    if (settings.domain > highest_domain) found.push_back(fmt::format("DDS domain {} is above {}", settings.domain, highest_domain));
+    if (!settings.interface.empty() && addresses_of(settings.interface).empty())
+        found.push_back(fmt::format("no network interface '{}' with an IPv4 address is up; there are {}", settings.interface,
+                                    fmt::join(interface_names(), ", ")));
+    for (const auto& peer : settings.peers) {
+        if (!is_ipv4_address(peer))
+            found.push_back(fmt::format("peer '{}' is not an IPv4 address (a name would block discovery for seconds)", peer));
+    }
+    const bool shared = settings.transport == Transport::shared_memory || settings.transport == Transport::iceoryx;
+    if (settings.transport == Transport::shared_memory && settings.vendor != Vendor::fastdds)
+        found.push_back("transport shm belongs to fastdds; cyclonedds has iceoryx");
+    if (settings.transport == Transport::iceoryx && settings.vendor != Vendor::cyclonedds)
+        found.push_back("transport iceoryx belongs to cyclonedds; fastdds has shm");
+    if (shared && settings.security)
+        found.push_back("shared memory would carry what DDS Security encrypts in plain text: use transport udp, or no security");
+    if (found.empty() && settings.transport == Transport::iceoryx && !roudi_answers())
+        found.push_back("iceoryx's daemon does not answer: start `iox-roudi -c deploy/configurations/roudi.toml`, or use transport udp");
+    return found;
+}
+
+}  // namespace quorient::bus
