@@ -1,6 +1,7 @@
 #pragma once
 
 #include "quorient/fdi/detector.hpp"
+#include "quorient/fdi/readmission.hpp"
 #include "quorient/fdi/settings.hpp"
 #include "quorient/fdi/verdict_machine.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"
@@ -8,32 +9,51 @@
 #include "quorient/messages/sensor_frame.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 
 namespace quorient::fdi {
 
-/// The brain of the detector process: a method and the state machine behind it. One verdict per accepted frame.
+/// The brain of the detector process: a method and the state machine behind it. One verdict per accepted frame; nothing is
+/// allocated per frame.
 class FaultMonitor {
 public:
-    /// @returns why this method cannot serve this cluster.
+    /// @returns why this method cannot serve this cluster, or which setting is wrong.
     static tl::expected<FaultMonitor, std::string> make(const DetectorSettings& detector, const VerdictSettings& verdict,
                                                         const geometry::SensorCluster& cluster);
 
-    /// The verdict of this frame. Frames have passed the intake: in order, finite, of the described cluster.
-    FaultVerdict assess(const SensorFrame& frame);
+    /// The same around a detector of one's own.
+    static tl::expected<FaultMonitor, std::string> make(std::unique_ptr<Detector> detector, const VerdictSettings& verdict,
+                                                        const geometry::SensorCluster& cluster);
 
-    /// Takes over the exclusions of a lane that went on while this detector was away.
+    /// The verdict of this frame. Frames have passed the intake: in order, finite, of the described cluster. A frame that is not
+    /// newer than the last one changes nothing. `detector` and `stamp_ns` are left to the process.
+    const FaultVerdict& assess(const SensorFrame& frame);
+
+    /// Takes over the exclusions of a lane that went on while this detector was away, in sequences of the current epoch.
     void adopt(const std::array<std::uint64_t, max_axes>& excluded_from);
 
     /// By command. @returns false where none of the axes was excluded.
     bool readmit(AxisMask axes);
 
+    const Detector& detector() const { return *detector_; }
+    const Assessment& assessment() const { return assessment_; }  ///< of the newest frame
+
 private:
-    FaultMonitor(std::unique_ptr<Detector> detector, VerdictMachine machine) : detector_(std::move(detector)), machine_(std::move(machine)) {}
+    FaultMonitor(std::unique_ptr<Detector> detector, const VerdictMachine& machine, const geometry::SensorCluster& cluster,
+                 std::optional<double> readmit_after_s);
+
+    Measurement measurement_of(const SensorFrame& frame) const;
+    void after_change(AxisMask before);
 
     std::unique_ptr<Detector> detector_;
     VerdictMachine machine_;
+    std::optional<Readmission> readmission_;
+    AxisMask all_;
+    bool started_ = false;
+    Assessment assessment_;
+    FaultVerdict verdict_;
 };
 
 }  // namespace quorient::fdi

@@ -1,0 +1,85 @@
+#include "quorient/fdi/fault_monitor.hpp"
+
+#include "quorient/fdi/make_detector.hpp"
+
+#include <bit>
+
+namespace quorient::fdi {
+
+tl::expected<FaultMonitor, std::string> FaultMonitor::make(const DetectorSettings& detector, const VerdictSettings& verdict,
+                                                           const geometry::SensorCluster& cluster)
+{
+    auto method = make_detector(detector, cluster);
+    if (!method) return tl::unexpected(method.error());
+    return make(std::move(*method), verdict, cluster);
+}
+
+tl::expected<FaultMonitor, std::string> FaultMonitor::make(std::unique_ptr<Detector> detector, const VerdictSettings& verdict,
+                                                           const geometry::SensorCluster& cluster)
+{
+    const auto machine = VerdictMachine::make(verdict, cluster.size());
+    if (!machine) return tl::unexpected(machine.error());
+    return FaultMonitor(std::move(detector), *machine, cluster, verdict.readmit_after_s);
+}
+
+FaultMonitor::FaultMonitor(std::unique_ptr<Detector> detector, const VerdictMachine& machine, const geometry::SensorCluster& cluster,
+                           std::optional<double> readmit_after_s)
+    : detector_(std::move(detector)), machine_(machine), all_(cluster.all())
+{
+    if (readmit_after_s) readmission_.emplace(cluster, *readmit_after_s);
+}
+
+const FaultVerdict& FaultMonitor::assess(const SensorFrame& frame)
+{
+    if (started_ && identity_of(frame) <= identity_of(verdict_)) return verdict_;
+    if (started_ && frame.epoch != verdict_.epoch) detector_->reset();
+    started_ = true;
+
+    const Measurement measurement = measurement_of(frame);
+    if (readmission_) readmit(readmission_->watch(measurement, machine_.isolated(), all_ & ~machine_.isolated()));
+    detector_->assess(measurement, assessment_);
+
+    const AxisMask before = machine_.isolated();
+    verdict_ = machine_.update(measurement.identity, assessment_);
+    const AxisMask newly = machine_.isolated() & ~before;
+    if (readmission_ && newly != 0) readmission_->excluded(newly, measurement, all_ & ~machine_.isolated());
+    after_change(before);
+
+    verdict_.sample_time_ns = frame.sample_time_ns;
+    verdict_.unit = frame.unit;
+    verdict_.kind = frame.kind;
+    verdict_.detectable_remaining = static_cast<std::uint8_t>(detector_->detectable_remaining());
+    return verdict_;
+}
+
+void FaultMonitor::adopt(const std::array<std::uint64_t, max_axes>& excluded_from)
+{
+    const AxisMask before = machine_.isolated();
+    machine_.adopt(excluded_from);
+    after_change(before);
+}
+
+bool FaultMonitor::readmit(AxisMask axes)
+{
+    const AxisMask before = machine_.isolated();
+    const bool returned = machine_.readmit(axes) != 0;
+    after_change(before);
+    return returned;
+}
+
+Measurement FaultMonitor::measurement_of(const SensorFrame& frame) const
+{
+    const auto axes = static_cast<std::size_t>(std::popcount(all_));
+    return {.identity = identity_of(frame),
+            .interval_s = frame.interval_s,
+            .increment = std::span(frame.increment).first(axes),
+            .valid = frame.valid_mask & all_,
+            .known_input = frame.known_input};
+}
+
+void FaultMonitor::after_change(AxisMask before)
+{
+    if (machine_.isolated() != before) detector_->exclude(machine_.isolated());
+}
+
+}  // namespace quorient::fdi
