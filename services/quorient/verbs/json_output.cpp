@@ -1,0 +1,55 @@
+#include "json_output.hpp"
+
+#include <fmt/format.h>
+#include <cmath>
+#include <iterator>
+
+namespace quorient::cli {
+
+namespace {
+
+/// nlohmann's own dump writes the shortest text that reads back to the same number; the contract asks for 17 digits.
+void append(std::string& text, const Json& value)
+{
+    if (value.is_number_float()) {
+        const double number = value.get<double>();
+        if (std::isfinite(number)) fmt::format_to(std::back_inserter(text), "{:.17g}", number);
+        else text += "null";
+    } else if (value.is_array()) {
+        text += '[';
+        for (const Json& element : value) {
+            if (text.back() != '[') text += ',';
+            append(text, element);
+        }
+        text += ']';
+    } else if (value.is_object()) {
+        text += '{';
+        for (const auto& [key, member] : value.items()) {
+            if (text.back() != '{') text += ',';
+            text += Json(key).dump() + ':';
+            append(text, member);
+        }
+        text += '}';
+    } else {
+        text += value.dump();
+    }
+}
+
+}  // namespace
+
+std::string dump(const Json& value)
+{
+    std::string text;
+    append(text, value);
+    return text;
+}
+
+Json axes_json(AxisMask mask)
+{
+    Json list = Json::array();
+    for (std::size_t axis = 0; axis < 32; ++axis)
+        if (has_axis(mask, axis)) list.push_back(axis);
+    return list;
+}
+
+}  // namespace quorient::cli
