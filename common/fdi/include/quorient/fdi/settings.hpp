@@ -26,7 +26,7 @@ struct VerdictSettings {
     unsigned confirm_window = 3;    ///< … of n frames
     unsigned warm_up_frames = 10;
     unsigned onset_guard_frames = 1;  ///< placed early: one frame late costs a contaminated increment, early costs nothing
-    std::optional<double> readmit_after_s;  ///< absent: by command only
+    std::optional<double> readmit_after_s{};  ///< absent: by command only
 };
 
 }  // namespace quorient::fdi
