@@ -122,7 +122,7 @@ VerdictMachine::Evidence VerdictMachine::evidence_of(const Assessment& assessmen
     for (unsigned i = 0; i < assessment.candidate_count; ++i) evidence.add(assessment.candidate[i] & known);
     evidence.truncated |= assessment.candidates_truncated;
     if (assessment.outcome == Outcome::suspect) {
-        AxisMask explained = evidence.count == 0 ? named : 0;
+        AxisMask explained = assessment.candidate_count == 0 ? named : 0;
         for (unsigned i = 0; i < evidence.count; ++i) explained |= evidence.explaining[i];
         evidence.culprit = named & explained;
         if (evidence.count == 0) evidence.add(evidence.culprit);

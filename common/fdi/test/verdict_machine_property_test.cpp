@@ -66,7 +66,9 @@ struct History {
 
 AxisMask union_of_explanations(const Frame& frame)
 {
-    AxisMask all = frame.assessment.isolated | frame.broken;
+    // A mere hint counts as an explanation only where the method lists none.
+    const bool hint = frame.assessment.outcome == Outcome::suspect && frame.assessment.candidate_count > 0;
+    AxisMask all = frame.broken | (hint ? 0 : frame.assessment.isolated);
     for (unsigned i = 0; i < frame.assessment.candidate_count; ++i) all |= frame.assessment.candidate[i];
     return all;
 }
