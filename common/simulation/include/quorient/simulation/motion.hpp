@@ -3,9 +3,11 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <concepts>
 #include <cstdint>
 #include <string>
 #include <tl/expected.hpp>
+#include <utility>
 #include <variant>
 
 namespace quorient::simulation {
@@ -69,7 +71,12 @@ public:
     using Kind = std::variant<Rest, Turn, Coning, ClassicConing, RandomMotion>;
 
     Motion() = default;
-    Motion(Kind kind) : kind_(std::move(kind)) {}  // NOLINT(google-explicit-constructor): a kind of motion is a motion
+    /// Each kind of motion is a motion.
+    template <class OneKind>
+    requires std::constructible_from<Kind, OneKind> &&(!std::same_as<std::remove_cvref_t<OneKind>, Motion>)Motion(OneKind&& kind)
+        : kind_(std::forward<OneKind>(kind))  // NOLINT(google-explicit-constructor)
+    {
+    }
 
     /// q_RB, body -> reference, Hamilton, of unit norm.
     Eigen::Quaterniond attitude(double time_s) const;
