@@ -8,6 +8,7 @@ find_package(spdlog REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(tl-expected REQUIRED)
 find_package(Threads REQUIRED)
+find_package(Boost REQUIRED)  # headers only: quantiles
 
 find_package(iceoryx_binding_c REQUIRED)  # Debian's CycloneDDSConfig.cmake does not find it by itself
 find_package(CycloneDDS REQUIRED)

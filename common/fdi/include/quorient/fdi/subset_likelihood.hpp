@@ -1,0 +1,87 @@
+#pragma once
+
+#include "quorient/fdi/frame_detector.hpp"
+#include "quorient/fdi/settings.hpp"
+#include "quorient/fdi/weighted_parity.hpp"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+namespace quorient::fdi {
+
+/// Exhaustive subset likelihood: every set w of up to K faulty axes (or whole instruments) is tried, and what it leaves,
+///   S_w = S0 - r_w' (P_ww)^-1 r_w   (in units of sigma^2),
+/// is the log-likelihood ratio of "w" against "anything". [methods.md, best achievable rate; for one axis this is LikelihoodRatio]
+///
+/// Sequential: S0 within the chi-square limit of q degrees is healthy; else the smallest size at which some S_w is within the limit of
+/// q - rank(P_ww) degrees decides, and the smallest S_w of that size is named, unless the margin M forbids it:
+///   - another set of equal or smaller size leaves at most S_w + M: ambiguous, with all of those;
+///   - no fault at all leaves at most S_w + M: suspect, with w as the likeliest culprit.
+/// No size within its limit: blind. Sets that explain nothing beyond a smaller one (P_ww singular) are left out.
+///
+/// Axes of unequal sigma are whitened first. For 4 to 24 axes, K up to q and as many sets as max_sets.
+/// Not guaranteed at margin 0: two faults on six axes can look like one or like another pair.
+class SubsetLikelihood final : public FrameDetector {
+public:
+    static constexpr std::size_t max_sets = 20'000;
+    static constexpr double default_margin = 9;  ///< three sigma between the best explanation and the next
+
+    struct Score {
+        AxisMask axes = 0;
+        double statistic = 0;  ///< S_w / sigma^2
+    };
+
+    /// Settings: sigma (else from noise), pfa, max_faults (default 2, at most q), margin, instruments.
+    static tl::expected<std::unique_ptr<SubsetLikelihood>, std::string> make(const DetectorSettings& settings,
+                                                                             const geometry::SensorCluster& cluster);
+
+    /// The sets of the last frame that leave least, best first, among those tried (up to the size that decided).
+    std::span<const Score> best() const { return {best_.data(), best_count_}; }
+
+private:
+    struct Set {
+        AxisMask axes = 0;
+        std::uint8_t size = 0;  ///< axes, or instruments
+        std::uint8_t rank = 0;
+        std::uint32_t member = 0;  ///< first of its independent axes in members_
+        std::uint32_t weight = 0;  ///< first of the rows of L^-1 in weights_, (P_ww = L L'), each as long as its place
+    };
+
+    SubsetLikelihood(const geometry::SensorCluster& cluster, geometry::AxisVector sigma, const DetectorSettings& settings);
+
+    void form(AxisMask working) override;
+    void judge(const geometry::AxisVector& z, Assessment& assessment) override;
+
+    AxisMask axes_of(AxisMask units, AxisMask working) const;
+    bool adds_nothing(AxisMask units, AxisMask working, std::size_t rank) const;
+    void add_set(AxisMask axes, std::size_t size, std::span<const std::uint8_t> independent);
+
+    double left_by(const Set& set) const;
+    void remember(const Score& score);
+    void name(const Score& chosen, double healthy, double rounding, std::size_t tried, Assessment& assessment) const;
+
+    geometry::AxisVector sigma_;
+    unsigned max_faults_;
+    double margin_;
+    bool instruments_;
+    std::size_t unit_count_;
+    std::array<double, max_axes> limit_{};  ///< chi-square, by degrees of freedom
+    WeightedParity parity_;
+
+    std::vector<Set> sets_;  ///< by size
+    std::vector<std::uint8_t> members_;
+    std::vector<double> weights_;
+
+    geometry::AxisVector residual_;  ///< of the frame, over sigma
+    double sum_of_squares_ = 0;
+    std::vector<double> left_;  ///< S_w of every set tried
+    std::array<Score, max_candidates> best_{};
+    std::size_t best_count_ = 0;
+};
+
+}  // namespace quorient::fdi

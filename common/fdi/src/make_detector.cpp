@@ -1,0 +1,71 @@
+#include "quorient/fdi/make_detector.hpp"
+
+#include "quorient/fdi/guaranteed.hpp"
+#include "quorient/fdi/invariants.hpp"
+#include "quorient/fdi/likelihood_ratio.hpp"
+#include "quorient/fdi/mean.hpp"
+#include "quorient/fdi/parity_set.hpp"
+#include "quorient/fdi/subset_likelihood.hpp"
+#include "quorient/fdi/voting.hpp"
+
+#include <fmt/format.h>
+
+namespace quorient::fdi {
+
+namespace {
+
+using Made = tl::expected<std::unique_ptr<Detector>, std::string>;
+
+template <class Method>
+Made made(const DetectorSettings& settings, const geometry::SensorCluster& cluster)
+{
+    auto detector = Method::make(settings, cluster);
+    if (!detector) return tl::unexpected(detector.error());
+    return std::unique_ptr<Detector>(std::move(*detector));
+}
+
+Made make_automatic(DetectorSettings settings, const geometry::SensorCluster& cluster)
+{
+    if (settings.instruments) return made<SubsetLikelihood>(settings, cluster);
+    if (!settings.margin) settings.margin = SubsetLikelihood::default_margin;
+    return made<LikelihoodRatio>(settings, cluster);
+}
+
+struct Factory {
+    std::string_view method;
+    Made (*make)(const DetectorSettings&, const geometry::SensorCluster&);
+};
+
+constexpr Factory factories[] = {
+    {"guaranteed", made<Guaranteed>}, {"invariants", made<Invariants>}, {"voting", made<Voting>},           {"mean", made<Mean>},
+    {"glt", made<LikelihoodRatio>},   {"parity-set", made<ParitySet>},  {"subset", made<SubsetLikelihood>},
+};
+
+}  // namespace
+
+const std::vector<MethodEntry>& methods()
+{
+    static const std::vector<MethodEntry> entries{
+        {"auto", "4 to 24", "vector on four axes, else subset where faults take instruments, else glt"},
+        {"guaranteed", "max_faults + 4 to 8", "set-membership estimation: never wrong while noise stays within its bound"},
+        {"invariants", "6 to 24", "every four axes' motion-free combination"},
+        {"voting", "6 to 24", "every three axes' estimate against every other three's"},
+        {"mean", "5 to 24", "the axis farthest from the mean leaves it, repeatedly"},
+        {"glt", "4 to 24", "generalised likelihood ratio test of one axis"},
+        {"parity-set", "4 to 24", "the same by the minimal set of parity equations"},
+        {"subset", "4 to 24", "likelihood of every set of up to max_faults axes or instruments"},
+    };
+    return entries;
+}
+
+tl::expected<std::unique_ptr<Detector>, std::string> make_detector(const DetectorSettings& settings, const geometry::SensorCluster& cluster)
+{
+    if (settings.method == "auto") return make_automatic(settings, cluster);
+    for (const Factory& factory : factories)
+        if (factory.method == settings.method) return factory.make(settings, cluster);
+    std::string known;
+    for (const MethodEntry& entry : methods()) known += (known.empty() ? "" : ", ") + std::string(entry.name);
+    return tl::unexpected(fmt::format("unknown detection method '{}'; known are {}", settings.method, known));
+}
+
+}  // namespace quorient::fdi

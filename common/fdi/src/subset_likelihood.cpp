@@ -1,0 +1,228 @@
+#include "quorient/fdi/subset_likelihood.hpp"
+
+#include "combinations.hpp"
+#include "quorient/fdi/noise.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace quorient::fdi {
+
+namespace {
+
+constexpr double singular = 1e-9;  // a pivot of P, whose entries are at most one
+
+/// A largest independent choice among columns of P, in ascending order, and L^-1 of that choice: P_ww = L L'.
+struct Factor {
+    std::array<std::uint8_t, max_axes> axis{};
+    std::size_t rank = 0;
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, static_cast<int>(max_axes), static_cast<int>(max_axes)> inverse;
+
+    Factor(const geometry::AxisMatrix& projector, AxisMask axes) : inverse(geometry::AxisMatrix::Zero(max_axes, max_axes))
+    {
+        const MaskMembers members(axes);
+        for (std::size_t k = 0; k < members.count; ++k) take(projector, members.item[k]);
+    }
+
+    std::span<const std::uint8_t> independent() const { return {axis.data(), rank}; }
+
+private:
+    /// One more row of the Cholesky factor's inverse, if the axis is independent of those taken before.
+    void take(const geometry::AxisMatrix& projector, std::uint8_t next)
+    {
+        const auto r = static_cast<Eigen::Index>(rank);
+        geometry::AxisVector coupling(r);
+        for (Eigen::Index k = 0; k < r; ++k) coupling(k) = projector(axis[static_cast<std::size_t>(k)], next);
+        const geometry::AxisVector row = inverse.topLeftCorner(r, r) * coupling;
+        const double pivot = projector(next, next) - row.squaredNorm();
+        if (pivot < singular) return;
+        const double scale = 1 / std::sqrt(pivot);
+        inverse.row(r).head(r) = -scale * (row.transpose() * inverse.topLeftCorner(r, r));
+        inverse(r, r) = scale;
+        axis[rank++] = next;
+    }
+};
+
+std::size_t units_of(const geometry::SensorCluster& cluster, bool instruments)
+{
+    if (!instruments) return cluster.size();
+    return *std::max_element(cluster.instrument.begin(), cluster.instrument.end()) + 1;
+}
+
+std::size_t count_sets(std::size_t units, unsigned max_faults)
+{
+    std::size_t count = 0;
+    for (unsigned size = 1; size <= max_faults; ++size) count += binomial(units, size);
+    return count;
+}
+
+}  // namespace
+
+tl::expected<std::unique_ptr<SubsetLikelihood>, std::string> SubsetLikelihood::make(const DetectorSettings& settings,
+                                                                                    const geometry::SensorCluster& cluster)
+{
+    if (const auto figures = check_figures(settings); !figures) return tl::unexpected(figures.error());
+    if (const auto enough = require_axes(cluster, 4, "subset"); !enough) return tl::unexpected(enough.error());
+    const std::size_t redundant = cluster.size() - 3;
+    const std::size_t units = units_of(cluster, settings.instruments);
+    DetectorSettings complete = settings;
+    complete.max_faults = settings.max_faults.value_or(static_cast<unsigned>(std::min<std::size_t>({2, redundant, units})));
+    if (*complete.max_faults > redundant || *complete.max_faults > units)
+        return tl::unexpected(fmt::format("subset: max_faults {} is more than {} {} with {} redundant axes can tell", *complete.max_faults,
+                                          units, settings.instruments ? "instruments" : "axes", redundant));
+    if (const std::size_t sets = count_sets(units, *complete.max_faults); sets > max_sets)
+        return tl::unexpected(
+            fmt::format("subset: max_faults {} means {} sets to try in every frame, at most {} are allowed: lower max_faults",
+                        *complete.max_faults, sets, max_sets));
+    const auto sigma = sigma_of_axes(settings, cluster);
+    if (!sigma) return tl::unexpected(sigma.error());
+    return std::unique_ptr<SubsetLikelihood>(new SubsetLikelihood(cluster, *sigma, complete));
+}
+
+SubsetLikelihood::SubsetLikelihood(const geometry::SensorCluster& cluster, geometry::AxisVector sigma, const DetectorSettings& settings)
+    : FrameDetector(cluster),
+      sigma_(std::move(sigma)),
+      max_faults_(settings.max_faults.value_or(2)),
+      margin_(settings.margin.value_or(default_margin)),
+      instruments_(settings.instruments),
+      unit_count_(units_of(cluster, settings.instruments)),
+      parity_(cluster.axes, sigma_),
+      residual_(geometry::AxisVector::Zero(sigma_.size()))
+{
+    for (unsigned dof = 0; dof < max_axes; ++dof)
+        limit_[dof] = chi_square_quantile(dof, settings.pfa.value_or(default_false_alarm_probability));
+
+    std::size_t members = 0;
+    std::size_t weights = 0;
+    const std::size_t redundant = cluster.size() - 3;
+    for (unsigned size = 1; size <= max_faults_; ++size) {
+        const std::size_t most = std::min(redundant, instruments_ ? cluster.size() : std::size_t{size});
+        members += binomial(unit_count_, size) * most;
+        weights += binomial(unit_count_, size) * most * (most + 1) / 2;
+    }
+    sets_.reserve(count_sets(unit_count_, max_faults_));
+    left_.reserve(sets_.capacity());
+    members_.reserve(members);
+    weights_.reserve(weights);
+    form(cluster.all());
+}
+
+AxisMask SubsetLikelihood::axes_of(AxisMask units, AxisMask working) const
+{
+    if (!instruments_) return units & working;
+    AxisMask axes = 0;
+    for (std::size_t axis = 0; axis < cluster().size(); ++axis)
+        if (has_axis(units, cluster().instrument[axis])) axes |= axis_bit(axis);
+    return axes & working;
+}
+
+void SubsetLikelihood::form(AxisMask working)
+{
+    parity_ = WeightedParity(cluster().axes, sigma_, working);
+    sets_.clear();
+    members_.clear();
+    weights_.clear();
+    for (unsigned size = 1; size <= max_faults_; ++size)
+        for_each_subset(all_axes(unit_count_), size, [&](AxisMask units) {
+            const AxisMask axes = axes_of(units, working);
+            const Factor factor(parity_.space().projector(), axes);
+            if (adds_nothing(units, working, factor.rank)) return;
+            add_set(axes, size, factor.independent());
+            for (Eigen::Index row = 0; row < static_cast<Eigen::Index>(factor.rank); ++row)
+                for (Eigen::Index column = 0; column <= row; ++column) weights_.push_back(factor.inverse(row, column));
+        });
+    left_.resize(sets_.size());
+}
+
+/// Whether some set with one unit less explains as much.
+bool SubsetLikelihood::adds_nothing(AxisMask units, AxisMask working, std::size_t rank) const
+{
+    if (!instruments_) return rank < static_cast<std::size_t>(std::popcount(units));
+    const MaskMembers members(units);
+    for (std::size_t k = 0; k < members.count; ++k)
+        if (Factor(parity_.space().projector(), axes_of(units & ~axis_bit(members.item[k]), working)).rank == rank) return true;
+    return false;
+}
+
+void SubsetLikelihood::add_set(AxisMask axes, std::size_t size, std::span<const std::uint8_t> independent)
+{
+    sets_.push_back({axes, static_cast<std::uint8_t>(size), static_cast<std::uint8_t>(independent.size()),
+                     static_cast<std::uint32_t>(members_.size()), static_cast<std::uint32_t>(weights_.size())});
+    members_.insert(members_.end(), independent.begin(), independent.end());
+}
+
+/// S_w: the squared norm of L^-1 r_w is what the set explains.
+double SubsetLikelihood::left_by(const Set& set) const
+{
+    const std::uint8_t* member = members_.data() + set.member;
+    const double* weight = weights_.data() + set.weight;
+    double explained = 0;
+    for (std::size_t row = 0; row < set.rank; ++row) {
+        double projection = 0;
+        for (std::size_t column = 0; column <= row; ++column) projection += *weight++ * residual_(member[column]);
+        explained += projection * projection;
+    }
+    return std::max(0.0, sum_of_squares_ - explained);
+}
+
+void SubsetLikelihood::remember(const Score& score)
+{
+    if (best_count_ == best_.size() && score.statistic >= best_.back().statistic) return;
+    std::size_t place = best_count_ < best_.size() ? best_count_++ : best_.size() - 1;
+    for (; place > 0 && best_[place - 1].statistic > score.statistic; --place) best_[place] = best_[place - 1];
+    best_[place] = score;
+}
+
+void SubsetLikelihood::judge(const geometry::AxisVector& z, Assessment& assessment)
+{
+    const geometry::AxisVector parity = parity_.parity(z) / parity_.sigma();
+    residual_ = parity_.residual(parity);
+    sum_of_squares_ = parity.squaredNorm();
+    const unsigned q = parity_.redundancy();
+    assessment.statistic = sum_of_squares_;
+    assessment.threshold = limit_[q];
+    for (Eigen::Index axis = 0; axis < z.size(); ++axis) {
+        const double unit = parity_.sigma() / parity_.weight()(axis);
+        assessment.residual[static_cast<std::size_t>(axis)] = residual_(axis) * unit;
+        assessment.bound[static_cast<std::size_t>(axis)] = std::sqrt(limit_[q] * parity_.space().projector()(axis, axis)) * unit;
+    }
+    best_count_ = 0;
+    assessment.outcome = sum_of_squares_ <= limit_[q] ? Outcome::healthy : Outcome::blind;
+    if (assessment.outcome == Outcome::healthy) return;
+
+    const double rounding = 64 * std::numeric_limits<double>::epsilon() * sum_of_squares_;  // of S0 minus what is explained
+    std::size_t tried = 0;
+    for (unsigned size = 1; size <= max_faults_; ++size) {
+        Score chosen{0, std::numeric_limits<double>::infinity()};
+        for (; tried < sets_.size() && sets_[tried].size == size; ++tried) {
+            const Set& set = sets_[tried];
+            left_[tried] = left_by(set);
+            remember({set.axes, left_[tried]});
+            if (left_[tried] < chosen.statistic && left_[tried] <= limit_[q - set.rank] + rounding) chosen = {set.axes, left_[tried]};
+        }
+        if (chosen.axes == 0) continue;
+        name(chosen, sum_of_squares_, rounding, tried, assessment);
+        return;
+    }
+}
+
+void SubsetLikelihood::name(const Score& chosen, double healthy, double rounding, std::size_t tried, Assessment& assessment) const
+{
+    const double rival = chosen.statistic + margin_ + rounding;
+    const auto rivals =
+        std::count_if(left_.begin(), left_.begin() + static_cast<std::ptrdiff_t>(tried), [&](double left) { return left <= rival; });
+    if (rivals > 1) {
+        assessment.outcome = Outcome::ambiguous;
+        for (std::size_t k = 0; k < best_count_ && best_[k].statistic <= rival; ++k) assessment.add_candidate(best_[k].axes);
+        assessment.candidates_truncated = static_cast<std::size_t>(rivals) > assessment.candidate_count;
+        return;
+    }
+    assessment.outcome = healthy <= rival ? Outcome::suspect : Outcome::isolated;
+    assessment.isolated = chosen.axes;
+}
+
+}  // namespace quorient::fdi
