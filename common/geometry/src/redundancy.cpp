@@ -1,5 +1,7 @@
 #include "quorient/geometry/redundancy.hpp"
 
+#include "quorient/geometry/figures.hpp"
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -9,15 +11,6 @@
 namespace quorient::geometry {
 
 namespace {
-
-Axes rows_in_use(const Axes& axes, AxisMask used)
-{
-    Axes kept(axes.rows(), 3);
-    Eigen::Index count = 0;
-    for (Eigen::Index axis = 0; axis < axes.rows(); ++axis)
-        if (has_axis(used, static_cast<std::size_t>(axis))) kept.row(count++) = axes.row(axis);
-    return kept.topRows(count);
-}
 
 /// How many instruments have an axis in use outside the plane with this unit normal.
 std::size_t instruments_outside(const Axes& axes, std::span<const std::size_t> instrument, AxisMask used, const Eigen::Vector3d& normal)
@@ -57,7 +50,7 @@ std::array<std::size_t, max_axes> own_instruments()
 
 int rank_of(const Axes& axes, AxisMask used)
 {
-    const Axes kept = rows_in_use(axes, used);
+    const Axes kept = select(axes, used);
     if (kept.rows() == 0) return 0;
     const Eigen::Matrix3d normal_matrix = kept.transpose() * kept;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(normal_matrix, Eigen::EigenvaluesOnly);

@@ -30,6 +30,16 @@ std::optional<Triad> triad_inverse(const Axes& axes, std::array<std::size_t, 3> 
     return Triad{axis, inverse, condition};
 }
 
+std::optional<BodyFromAxes> least_squares_inverse(const Axes& axes, AxisMask used)
+{
+    if (rank_of(axes, used) < 3) return std::nullopt;
+    Axes kept = axes;
+    for (Eigen::Index axis = 0; axis < axes.rows(); ++axis)
+        if (!has_axis(used, static_cast<std::size_t>(axis))) kept.row(axis).setZero();
+    const Eigen::Matrix3d information = kept.transpose() * kept;
+    return information.inverse() * kept.transpose();
+}
+
 std::vector<Triad> triads(const Axes& axes, AxisMask used)
 {
     std::vector<Triad> all;

@@ -35,4 +35,11 @@ std::optional<Triad> triad_inverse(const Axes& axes, std::array<std::size_t, 3> 
 /// For four axes these are T1..T4 of paper 003: (0,1,2), (0,1,3), (0,2,3), (1,2,3).
 std::vector<Triad> triads(const Axes& axes, AxisMask used = ~AxisMask{0});
 
+/// 3 x n, body vector from all axes.
+using BodyFromAxes = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, static_cast<int>(max_axes)>;
+
+/// B = (H'H)^-1 H' of the axes in use, columns of the others zero: the least-squares body vector is B z. Nothing where the axes
+/// in use do not span space. Allocates nothing. [paper 003, eqs 7, 12, 21 (row 1 corrected), 30]
+std::optional<BodyFromAxes> least_squares_inverse(const Axes& axes, AxisMask used = ~AxisMask{0});
+
 }  // namespace quorient::geometry
