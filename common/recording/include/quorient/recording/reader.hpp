@@ -15,9 +15,9 @@ namespace quorient::recording {
 
 /// One sample of a log, in the units of the pipeline.
 struct RecordedFrame {
-    std::int64_t time_ns = 0;  ///< of the log's own clock since its first record; strictly increasing. The end of the interval.
-    double interval_s = 0;     ///< that this sample's increments stand for (not the gap before it)
-    std::array<double, max_axes> increment{};          ///< gyros: rate x interval [rad]
+    std::int64_t time_ns = 0;                  ///< end of the interval, from the beginning of the log's first frame; strictly increasing
+    double interval_s = 0;                     ///< that this sample's increments stand for (not the gap before it)
+    std::array<double, max_axes> increment{};  ///< gyros: rate x interval [rad]
     std::array<double, max_axes> acceleration_m_s2{};  ///< accelerometer axes, placed as the gyros'; 0 where the log has none
     AxisMask valid_mask = 0;                           ///< of the gyro axes
     AxisMask acceleration_mask = 0;
@@ -35,6 +35,7 @@ struct Statistics {
     std::uint64_t malformed = 0;        ///< a line with a bad or missing cell, a line too long
     std::uint64_t lost = 0;             ///< records that the log's numbers or times say are missing
     std::uint64_t nan = 0;              ///< records with NaN or infinity
+    std::uint64_t incomplete = 0;       ///< frames given out without one axis or more (not valid there)
     std::uint64_t repeated = 0;         ///< records with the time stamp or number of the one before
     std::uint64_t irregular = 0;        ///< records whose time step fits no whole number of intervals, or goes back
     std::uint64_t skipped_bytes = 0;    ///< passed over to find the next intact packet
@@ -58,6 +59,7 @@ public:
     virtual ReadOutcome next(RecordedFrame& frame) = 0;
 
     /// Nominal axes, instruments and their names, range, quantum and interval; sigma and bias are 0 (see rest_statistics).
+    /// A plain CSV does not say where its axes point: they are 0 there.
     const ClusterDescription& description() const { return description_; }
 
     const Statistics& statistics() const { return statistics_; }
