@@ -1,11 +1,13 @@
 #include "quorient/fdi/make_detector.hpp"
 
+#include "quorient/fdi/extrapolation.hpp"
 #include "quorient/fdi/guaranteed.hpp"
 #include "quorient/fdi/invariants.hpp"
 #include "quorient/fdi/likelihood_ratio.hpp"
 #include "quorient/fdi/mean.hpp"
 #include "quorient/fdi/parity_set.hpp"
 #include "quorient/fdi/subset_likelihood.hpp"
+#include "quorient/fdi/vector_predictor.hpp"
 #include "quorient/fdi/voting.hpp"
 
 #include <fmt/format.h>
@@ -26,6 +28,7 @@ Made made(const DetectorSettings& settings, const geometry::SensorCluster& clust
 
 Made make_automatic(DetectorSettings settings, const geometry::SensorCluster& cluster)
 {
+    if (cluster.size() == FourAxisDetector::axis_count) return made<VectorPredictor>(settings, cluster);
     if (settings.instruments) return made<SubsetLikelihood>(settings, cluster);
     if (!settings.margin) settings.margin = SubsetLikelihood::default_margin;
     return made<LikelihoodRatio>(settings, cluster);
@@ -54,6 +57,8 @@ const std::vector<MethodEntry>& methods()
         {"glt", "4 to 24", "generalised likelihood ratio test of one axis"},
         {"parity-set", "4 to 24", "the same by the minimal set of parity equations"},
         {"subset", "4 to 24", "likelihood of every set of up to max_faults axes or instruments"},
+        {"extrapolation", "4", "the triad whose modulus fits the extrapolated one (the paper's method)"},
+        {"vector", "4", "the triad whose body vector fits the extrapolated one"},
     };
     return entries;
 }
