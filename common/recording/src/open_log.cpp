@@ -44,8 +44,8 @@ bool swapped(mimu::Bytes bytes)
 
 bool looks_like_text(mimu::Bytes bytes)
 {
-    return std::none_of(bytes.begin(), bytes.end(),
-                        [](std::uint8_t byte) { return byte < 0x20 && byte != '\t' && byte != '\n' && byte != '\r'; });
+    const auto control = [](std::uint8_t byte) { return byte < 0x20 && byte != '\t' && byte != '\n' && byte != '\r'; };
+    return std::find(bytes.begin(), bytes.end(), '\n') != bytes.end() && std::none_of(bytes.begin(), bytes.end(), control);
 }
 
 /// The interval that most of the first records keep: the median of the steps forward.
