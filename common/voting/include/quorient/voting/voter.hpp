@@ -75,7 +75,10 @@ public:
     const VoterCounters& counters() const;
     VoteLevel level() const;
     std::uint32_t primary_lane() const;  ///< lane id, 0 while there is none
-    bool owns() const;                   ///< writes `voted`, and no stronger voter is fresh
+    bool owns() const;                   ///< may own, and no stronger voter is fresh
+
+    /// Whether `voted` may be owned now. Assert its liveliness only while this holds, or a better voter is kept from taking over.
+    bool may_own() const;
 
 private:
     class Brain;

@@ -1,0 +1,75 @@
+#pragma once
+
+#include "quorient/messages/attitude_state.hpp"
+#include "quorient/messages/fault_verdict.hpp"
+#include "quorient/messages/identity.hpp"
+#include "quorient/messages/limits.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace quorient::voting {
+
+/// What the lanes' detectors say: which axes a majority of them reports, and whether suspicion is in the air.
+///
+/// A detector reports an axis that it calls SUSPECT, ISOLATED or candidate in its newest verdict, or that its lane's attitude leaves
+/// out. What it isolated stays reported while it is silent (a dead detector re-admits nobody); mere suspicion is dropped then.
+class Corroboration {
+public:
+    Corroboration(std::size_t lanes, std::size_t majority, unsigned settle_frames, unsigned reopen_frames, std::int64_t silence_ns)
+        : lanes_(lanes), majority_(majority), settle_frames_(settle_frames), reopen_frames_(reopen_frames), silence_ns_(silence_ns)
+    {
+    }
+
+    /// @param newest the newest frame known to the voter; verdicts far ahead of it are not believed.
+    /// @returns false where the verdict was old, repeated, or of a frame that cannot be.
+    bool on_verdict(std::size_t lane, const FaultVerdict& verdict, Identity newest, std::int64_t now_ns);
+
+    /// The masks of a lane's newest attitude.
+    void on_sample(std::size_t lane, const AttitudeState& sample, std::int64_t now_ns);
+
+    /// A frame was published: a suspicion that a majority shares holds the settle time open.
+    void on_published(Identity identity, std::int64_t now_ns);
+
+    AxisMask corroborated(std::int64_t now_ns) const;
+
+    /// From the first SUSPECT until settle time.
+    bool settling(Identity identity) const { return identity.epoch == settle_epoch_ && identity.sequence < settle_until_; }
+
+    bool speaks(std::size_t lane, std::int64_t now_ns) const;
+    bool has_judged(std::size_t lane, Identity identity) const { return voice_[lane].identity >= identity; }
+
+    /// The detector says that no further fault could be detected.
+    bool redundancy_exhausted(std::size_t lane, std::int64_t now_ns) const;
+
+private:
+    struct Voice {
+        Identity identity;
+        std::int64_t heard_ns = 0;
+        std::uint64_t opened_at = 0;  ///< frame at which this lane alone last opened the settle time
+        AxisMask isolated = 0;        ///< by the verdict
+        AxisMask suspected = 0;
+        AxisMask applied = 0;  ///< by the lane's attitude
+        AxisMask doubted = 0;
+        bool heard = false;
+        bool troubled = false;
+        bool exhausted = false;
+        bool opened_once = false;
+    };
+
+    AxisMask reported(const Voice& voice, std::int64_t now_ns) const;
+    void open(Voice& voice, Identity identity, AxisMask axes, std::int64_t now_ns);
+    bool fresh(const Voice& voice, std::int64_t now_ns) const { return voice.heard && now_ns - voice.heard_ns <= silence_ns_; }
+
+    std::array<Voice, max_lanes> voice_{};
+    std::size_t lanes_;
+    std::size_t majority_;
+    unsigned settle_frames_;
+    unsigned reopen_frames_;
+    std::int64_t silence_ns_;
+    std::uint64_t settle_epoch_ = 0;
+    std::uint64_t settle_until_ = 0;
+};
+
+}  // namespace quorient::voting

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+namespace quorient::voting {
+
+inline std::int64_t nanoseconds(double seconds)
+{
+    return std::llround(seconds * 1e9);
+}
+inline double seconds(std::int64_t nanoseconds)
+{
+    return static_cast<double>(nanoseconds) * 1e-9;
+}
+
+}  // namespace quorient::voting

@@ -1,0 +1,95 @@
+#pragma once
+
+#include "quorient/messages/identity.hpp"
+#include "quorient/messages/voted_attitude.hpp"
+#include "quorient/voting/voter_settings.hpp"
+
+#include <array>
+#include <compare>
+#include <cstdint>
+#include <vector>
+
+namespace quorient::voting {
+
+/// Where a stream of outputs has come to.
+struct Position {
+    Identity identity;
+    std::uint64_t output_sequence = 0;
+
+    auto operator<=>(const Position&) const = default;
+};
+
+/// What the other voters of the unit publish, whom this one follows, and what it may write to `voted`.
+///
+/// A voter follows the strongest fresh voter among those stronger than itself. It writes `voted` only after a number of good frames, and
+/// never steps back: nothing at or below what a stronger voter has published, nor, when it begins to write or comes out of
+/// a delay, below what any voter has published.
+class VoterRanking {
+public:
+    explicit VoterRanking(const VoterSettings& settings);
+
+    bool has_others() const { return !others_.empty(); }
+    bool has_stronger() const { return !others_.empty() && others_.front().stronger; }
+
+    /// @returns false for own samples and for voters that are not in the list.
+    bool on_output(const VotedAttitude& output, std::int64_t now_ns);
+
+    /// The newest output of the voter that this one follows; null where there is none to follow.
+    const VotedAttitude* leader(std::int64_t now_ns) const;
+
+    /// The leader's output of this frame, and the last one before it; null where not known.
+    const VotedAttitude* leader_at(Identity identity, std::int64_t now_ns) const;
+    const VotedAttitude* leader_before(Identity identity, std::int64_t now_ns) const;
+
+    /// The farthest output of all fresh voters; null where there is none.
+    const VotedAttitude* farthest(std::int64_t now_ns) const;
+
+    /// The number of the next output, of this frame: above all own ones and in step with the others'.
+    std::uint64_t next_output_sequence(Identity identity) const;
+
+    /// To be asked once for every output, in order.
+    bool may_write(Position position, bool repeated, std::int64_t now_ns);
+
+    /// The voter was away, or has just started.
+    void start_over();
+
+    /// For a while nothing is written that any voter has published already.
+    void take_care_until(std::int64_t time_ns) { careful_until_ns_ = time_ns; }
+
+    bool established() const { return good_frames_ >= good_frames_required_; }
+
+    /// Another voter is fresh and has come farther than this.
+    bool is_behind(Identity identity, std::int64_t now_ns) const;
+
+    /// When the leader ends to be fresh.
+    std::int64_t leader_ends_ns(std::int64_t now_ns) const;
+
+private:
+    static constexpr std::uint64_t remembered = 16;
+
+    struct Other {
+        std::uint32_t voter = 0;
+        bool stronger = false;
+        bool heard = false;
+        std::int64_t heard_ns = 0;
+        Position newest;
+        std::array<VotedAttitude, remembered> output{};  ///< by sequence
+    };
+
+    const Other* leading(std::int64_t now_ns) const;
+    std::int64_t fresh_until_ns(const Other& other) const;
+    static const VotedAttitude& newest(const Other& other) { return other.output[other.newest.identity.sequence % remembered]; }
+
+    std::uint32_t unit_;
+    std::vector<Other> others_;  ///< strongest first
+    std::int64_t lease_ns_;
+    std::int64_t coasting_interval_ns_;
+    std::int64_t careful_until_ns_ = 0;
+    unsigned good_frames_required_;
+    unsigned good_frames_ = 0;
+    std::uint64_t own_sequence_ = 0;
+    Position written_;
+    Position highest_seen_;
+};
+
+}  // namespace quorient::voting

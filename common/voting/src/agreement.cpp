@@ -1,0 +1,71 @@
+#include "quorient/voting/agreement.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace quorient::voting {
+namespace {
+
+Eigen::Quaterniond eigen(const Quaternion& q)
+{
+    return {q[0], q[1], q[2], q[3]};
+}
+
+Quaternion wire(const Eigen::Quaterniond& q)
+{
+    return {q.w(), q.x(), q.y(), q.z()};
+}
+
+bool finite(const auto& values)
+{
+    return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+}
+
+}  // namespace
+
+Quaternion product(const Quaternion& left, const Quaternion& right)
+{
+    return wire(eigen(left) * eigen(right));
+}
+
+Quaternion conjugate(const Quaternion& q)
+{
+    return {q[0], -q[1], -q[2], -q[3]};
+}
+
+double geodesic_angle(const Quaternion& a, const Quaternion& b)
+{
+    const Eigen::Quaterniond difference = eigen(a).conjugate() * eigen(b);
+    return 2 * std::atan2(difference.vec().norm(), std::abs(difference.w()));
+}
+
+bool is_attitude(const Quaternion& q)
+{
+    return finite(q) && std::abs(eigen(q).norm() - 1) < 1e-6;
+}
+
+bool is_sound(const AttitudeState& sample)
+{
+    return is_attitude(sample.attitude) && is_attitude(sample.reset_rotation) && finite(sample.rate_rad_s) &&
+           std::isfinite(sample.angle_sigma_rad) && sample.angle_sigma_rad >= 0;
+}
+
+bool Agreement::agree(std::size_t a, const AttitudeState& of_a, std::size_t b, const AttitudeState& of_b, double sigma_limit) const
+{
+    const double sigma = std::hypot(std::min(of_a.angle_sigma_rad, sigma_limit), std::min(of_b.angle_sigma_rad, sigma_limit));
+    const double gate_rad = agreement_rad_ + agreement_sigmas_ * sigma;
+    return geodesic_angle(of_a.attitude, of_b.attitude) <= (apart_.test(pair(a, b)) ? gate_rad / 2 : gate_rad);
+}
+
+void Agreement::remember(std::size_t a, const AttitudeState& of_a, std::size_t b, const AttitudeState& of_b, double sigma_limit)
+{
+    apart_.set(pair(a, b), !agree(a, of_a, b, of_b, sigma_limit));
+}
+
+void Agreement::forget(std::size_t lane)
+{
+    for (std::size_t other = 0; other < max_lanes; ++other) apart_.reset(pair(lane, other));
+}
+
+}  // namespace quorient::voting

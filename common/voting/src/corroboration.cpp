@@ -1,0 +1,118 @@
+#include "quorient/voting/corroboration.hpp"
+
+#include "quorient/messages/codes.hpp"
+#include "quorient/voting/timeline.hpp"
+
+#include <algorithm>
+
+namespace quorient::voting {
+namespace {
+
+AxisMask candidates(const FaultVerdict& verdict)
+{
+    AxisMask axes = 0;
+    const std::size_t count = std::min<std::size_t>(verdict.candidate_count, max_candidates);
+    for (std::size_t set = 0; set < count; ++set) axes |= verdict.candidate_set[set];
+    return axes;
+}
+
+bool sees_trouble(const FaultVerdict& verdict)
+{
+    const auto state = static_cast<VerdictState>(verdict.state);
+    return state == VerdictState::suspect || state == VerdictState::ambiguous;
+}
+
+bool is_tested(const FaultVerdict& verdict)
+{
+    return verdict.state >= static_cast<std::uint8_t>(VerdictState::healthy);
+}
+
+}  // namespace
+
+bool Corroboration::on_verdict(std::size_t lane, const FaultVerdict& verdict, Identity newest, std::int64_t now_ns)
+{
+    Voice& voice = voice_[lane];
+    const Identity identity = identity_of(verdict);
+    const bool strays = voice.heard && voice.identity.epoch != newest.epoch && identity.epoch == newest.epoch;
+    if (voice.heard && identity <= voice.identity && !strays) return false;
+    if (newest.epoch == identity.epoch && identity.sequence > newest.sequence + frame_window) return false;
+
+    const bool trouble = sees_trouble(verdict);
+    const AxisMask all = all_axes(max_axes);
+    const AxisMask isolated = verdict.isolated_mask & all;
+    const bool onset = (trouble && !voice.troubled) || isolated != voice.isolated;
+    voice.identity = identity;
+    voice.heard_ns = now_ns;
+    voice.heard = true;
+    voice.troubled = trouble;
+    voice.isolated = isolated;
+    voice.suspected = (verdict.suspect_mask | candidates(verdict)) & all;
+    voice.exhausted = is_tested(verdict) && verdict.detectable_remaining == 0;
+    if (onset) open(voice, identity, reported(voice, now_ns), now_ns);
+    return true;
+}
+
+void Corroboration::on_sample(std::size_t lane, const AttitudeState& sample, std::int64_t now_ns)
+{
+    Voice& voice = voice_[lane];
+    const AxisMask all = all_axes(max_axes);
+    const bool onset = voice.applied != (sample.isolated_mask & all) || (sample.suspect_mask & all & ~voice.doubted) != 0;
+    voice.applied = sample.isolated_mask & all;
+    voice.doubted = sample.suspect_mask & all;
+    if (onset) open(voice, identity_of(sample), voice.applied | voice.doubted, now_ns);
+}
+
+void Corroboration::on_published(Identity identity, std::int64_t now_ns)
+{
+    std::size_t troubled = 0;
+    for (std::size_t lane = 0; lane < lanes_; ++lane) troubled += fresh(voice_[lane], now_ns) && voice_[lane].troubled ? 1 : 0;
+    if (troubled < majority_) return;
+    settle_epoch_ = identity.epoch;
+    settle_until_ = identity.sequence + 1 + settle_frames_;
+}
+
+AxisMask Corroboration::corroborated(std::int64_t now_ns) const
+{
+    std::array<std::uint8_t, max_axes> reports{};
+    for (std::size_t lane = 0; lane < lanes_; ++lane) {
+        const AxisMask axes = reported(voice_[lane], now_ns);
+        for (std::size_t axis = 0; axes >> axis != 0; ++axis)
+            reports[axis] = static_cast<std::uint8_t>(reports[axis] + (axes >> axis & 1U));
+    }
+    AxisMask agreed = 0;
+    for (std::size_t axis = 0; axis < max_axes; ++axis) {
+        if (reports[axis] >= majority_) agreed |= axis_bit(axis);
+    }
+    return agreed;
+}
+
+bool Corroboration::speaks(std::size_t lane, std::int64_t now_ns) const
+{
+    return fresh(voice_[lane], now_ns);
+}
+
+bool Corroboration::redundancy_exhausted(std::size_t lane, std::int64_t now_ns) const
+{
+    return fresh(voice_[lane], now_ns) && voice_[lane].exhausted;
+}
+
+AxisMask Corroboration::reported(const Voice& voice, std::int64_t now_ns) const
+{
+    const AxisMask suspected = fresh(voice, now_ns) ? voice.suspected : 0;
+    return voice.isolated | voice.applied | voice.doubted | suspected;
+}
+
+/// One lane alone can hold off exclusions only once in a while; where its axes are corroborated, at every step it takes.
+void Corroboration::open(Voice& voice, Identity identity, AxisMask axes, std::int64_t now_ns)
+{
+    const bool shared = axes != 0 && (axes & ~corroborated(now_ns)) == 0;
+    const bool recently = voice.opened_once && identity.epoch == settle_epoch_ && identity.sequence < voice.opened_at + reopen_frames_;
+    if (recently && !shared) return;
+    voice.opened_once = true;
+    voice.opened_at = identity.sequence;
+    const std::uint64_t until = identity.sequence + 1 + settle_frames_;
+    settle_until_ = identity.epoch == settle_epoch_ ? std::max(settle_until_, until) : until;
+    settle_epoch_ = identity.epoch;
+}
+
+}  // namespace quorient::voting
