@@ -211,7 +211,6 @@ QUORIENT_SAME(quorient_msgs_FaultCommand, FaultCommand, request, request);
 QUORIENT_SAME(quorient_msgs_FaultCommand, FaultCommand, value, value);
 QUORIENT_SAME(quorient_msgs_FaultCommand, FaultCommand, start_s, start_s);
 QUORIENT_SAME(quorient_msgs_FaultCommand, FaultCommand, end_s, end_s);
-QUORIENT_SAME(quorient_msgs_FaultCommand, FaultCommand, now, now);
 QUORIENT_SAME(quorient_msgs_FaultCommand, FaultCommand, frequency_hz, frequency_hz);
 QUORIENT_SAME(quorient_msgs_FaultCommand, FaultCommand, period_s, period_s);
 QUORIENT_SAME(quorient_msgs_FaultCommand, FaultCommand, attitude, attitude);

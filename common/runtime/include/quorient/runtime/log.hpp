@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace quorient::runtime {
+
+/// Logs go to stderr, a line each: time, level, text. $QUORIENT_LOG sets the level (debug, info, warn, error).
+void start_log();
+
+/// Tells a problem (one or several lines) on stderr. @returns 2, the exit code of bad input.
+int report(std::string_view problem);
+
+/// Runs a service's main: an environment that refuses an entity at start-up is reported, exit code 1.
+int guarded(int (*body)(int, char**), int argc, char** argv);
+
+}  // namespace quorient::runtime

@@ -1,0 +1,96 @@
+#pragma once
+
+#include "quorient/bus/bus.hpp"
+#include "quorient/messages/health_event.hpp"
+#include "quorient/messages/identity.hpp"
+#include "quorient/messages/service_status.hpp"
+#include "quorient/runtime/event_loop.hpp"
+#include "quorient/runtime/heartbeat.hpp"
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace quorient::runtime {
+
+/// Who a process is.
+struct NodeSettings {
+    std::string name;
+    std::uint32_t unit = 0;
+    std::uint32_t service = 0;  ///< unique in the domain
+    ServiceRole role = ServiceRole::unknown;
+    bool stamps = false;     ///< fill the hop stamps of messages
+    bool heartbeat = true;   ///< leave a heartbeat file
+    bool log_events = true;  ///< also to stderr
+};
+
+/// What every service does beside its work: tells its events and its status, leaves its heartbeat, watches its endpoints.
+class Node {
+public:
+    Node(NodeSettings settings, bus::Bus& bus, EventLoop& loop);
+    ~Node();
+    Node(const Node&) = delete;
+    Node& operator=(const Node&) = delete;
+
+    /// One event: published, latched for late joiners, and logged.
+    void report(EventCode code, Severity severity, Identity identity, std::uint32_t axes, std::string_view text, std::uint64_t request = 0);
+
+    /// As report(), but at most once a second for each code.
+    void report_throttled(EventCode code, Severity severity, Identity identity, std::uint32_t axes, std::string_view text);
+
+    /// Tells the new state at once.
+    void set_state(ServiceState state);
+    ServiceState state() const { return static_cast<ServiceState>(status_.state); }
+
+    /// Counters are written here by the service and go out twice a second.
+    ServiceStatus& status() { return status_; }
+
+    /// Counts a handled frame: heartbeat, identity, and the time since its arrival.
+    void handled(Identity identity, std::int64_t arrival_ns);
+
+    /// Warns when this endpoint meets an incompatible peer, and when it matched nobody within 5 s.
+    void watch(std::string_view what, std::function<bus::EndpointStatus()> status, bool must_match);
+
+    /// The endpoint whose transport and peers the status tells.
+    void main_output(std::function<bus::EndpointStatus()> status) { main_output_ = std::move(status); }
+
+    const NodeSettings& settings() const { return settings_; }
+    const Clock& clock() const { return loop_.clock(); }
+    EventLoop& loop() { return loop_; }
+    bus::Bus& bus() { return bus_; }
+
+    /// Now, if stamps are asked for; else 0.
+    std::int64_t stamp() const { return settings_.stamps ? clock().steady_ns() : 0; }
+
+private:
+    struct Watched {
+        std::string what;
+        std::function<bus::EndpointStatus()> status;
+        bool must_match;
+        std::uint32_t incompatible = 0;
+        bool told_unmatched = false;
+    };
+
+    void publish_status();
+    void look_at_endpoints();
+
+    NodeSettings settings_;
+    bus::Bus& bus_;
+    EventLoop& loop_;
+    bus::Publisher<HealthEvent> events_;
+    bus::Publisher<ServiceStatus> statuses_;
+    std::optional<Heartbeat> heartbeat_;
+    ServiceStatus status_;
+    std::uint64_t event_number_ = 0;
+    std::array<std::int64_t, 256> last_told_ns_{};
+    std::array<std::int64_t, 1024> latency_ns_{};  // ring of the newest
+    std::size_t latency_count_ = 0;
+    std::vector<Watched> watched_;
+    std::function<bus::EndpointStatus()> main_output_;
+    std::int64_t started_ns_;
+};
+
+}  // namespace quorient::runtime

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "quorient/messages/codes.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+namespace quorient::runtime {
+
+/// What every service is told on its command line.
+struct Options {
+    std::string system_file;
+    std::string name;  ///< of this process in the system file
+    std::optional<Vendor> dds;
+    std::optional<std::uint32_t> domain;
+    std::vector<std::string> set;  ///< values in place of the file's
+};
+
+struct OptionsError {
+    int exit_code;  ///< 0 after --help or --version, 2 after a mistake; either is already explained
+};
+
+/// Reads SYSTEM.yaml [--name NAME] [--dds VENDOR] [--domain N] [--set KEY=VALUE …]; --help shows an example.
+/// @param default_name  the service's own name where a system has just one of its role; empty = --name is required.
+tl::expected<Options, OptionsError> parse_options(int argc, char** argv, const std::string& description, const std::string& default_name);
+
+/// The version of this build.
+std::string version();
+
+}  // namespace quorient::runtime

@@ -1,0 +1,79 @@
+#include "quorient/runtime/event_loop.hpp"
+
+#include <algorithm>
+
+namespace quorient::runtime {
+
+namespace {
+
+/// A signal does not wake the wait set; this bounds how late it is noticed.
+constexpr std::int64_t longest_wait_ns = 50'000'000;
+
+}  // namespace
+
+void EventLoop::every(std::int64_t period_ns, std::function<void()> handler)
+{
+    auto& repeating = timers_.emplace_back([] {});
+    repeating.handler_ = [this, &repeating, period_ns, handler = std::move(handler)] {
+        // Late calls are skipped, not made up for.
+        const auto now = clock_.steady_ns();
+        repeating.set(now + period_ns);
+        handler();
+    };
+    repeating.set(clock_.steady_ns() + period_ns);
+}
+
+int EventLoop::run()
+{
+    while (!quit_ && !stop_.load(std::memory_order_relaxed)) {
+        if (!dispatch() && !work()) wait();
+    }
+    return exit_code_;
+}
+
+void EventLoop::quit(int exit_code)
+{
+    quit_ = true;
+    exit_code_ = exit_code;
+}
+
+bool EventLoop::dispatch()
+{
+    bool any = false;
+    for (auto& input : inputs_) any = input->poll() || any;
+    return fire_timers() || any;
+}
+
+std::int64_t EventLoop::next_deadline_ns() const
+{
+    auto next = Timer::off;
+    for (const auto& timer : timers_) next = std::min(next, timer.deadline_ns_);
+    return next;
+}
+
+void EventLoop::wait()
+{
+    const auto until_timer = next_deadline_ns() - clock_.steady_ns();
+    bus_.wait(spin_ ? 0 : std::clamp<std::int64_t>(until_timer, 0, longest_wait_ns));
+}
+
+bool EventLoop::fire_timers()
+{
+    bool any = false;
+    for (auto& timer : timers_) {
+        if (timer.deadline_ns_ > clock_.steady_ns()) continue;
+        timer.cancel();
+        timer.handler_();
+        any = true;
+    }
+    return any;
+}
+
+bool EventLoop::work()
+{
+    bool more = false;
+    for (auto& work : idle_) more = work() || more;
+    return more;
+}
+
+}  // namespace quorient::runtime

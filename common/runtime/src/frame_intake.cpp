@@ -1,0 +1,126 @@
+#include "quorient/runtime/frame_intake.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace quorient::runtime {
+
+namespace {
+
+constexpr double silent_intervals = 5;
+constexpr double silent_at_least_s = 0.1;
+
+/// A value at the end of its range is legal; rounding must not push it out.
+constexpr double range_tolerance = 1.0 + 1e-9;
+
+}  // namespace
+
+const char* FrameIntake::problem_of(const ClusterDescription& description)
+{
+    if (description.axis_count < 3 || description.axis_count > max_axes) return "it must have 3 to 24 axes";
+    if (!(description.interval_s > 0) || !std::isfinite(description.interval_s)) return "its interval must be above 0 s";
+    return nullptr;
+}
+
+void FrameIntake::describe(const ClusterDescription& description)
+{
+    if (description.unit != unit_ || description.kind != static_cast<std::uint8_t>(kind_)) return;
+    if (problem_of(description)) {
+        ++counters_.rejected_frames;
+        return;
+    }
+    for (std::size_t i = 0; i < description_count_; ++i) {
+        if (descriptions_[i].epoch == description.epoch && descriptions_[i].revision == description.revision) return;
+    }
+    descriptions_[description_next_] = description;
+    description_next_ = (description_next_ + 1) % remembered_descriptions;
+    description_count_ = std::min(description_count_ + 1, remembered_descriptions);
+}
+
+bool FrameIntake::offer(const SensorFrame& frame, std::int64_t now_ns)
+{
+    if (frame.unit != unit_ || frame.kind != static_cast<std::uint8_t>(kind_)) return false;
+    if (!order(frame, now_ns)) return true;
+    if (waiting_count_ == waiting_capacity) {
+        waiting_begin_ = (waiting_begin_ + 1) % waiting_capacity;
+        --waiting_count_;
+        ++counters_.waiting_lost;
+    }
+    waiting_[(waiting_begin_ + waiting_count_) % waiting_capacity] = frame;
+    ++waiting_count_;
+    return true;
+}
+
+bool FrameIntake::order(const SensorFrame& frame, std::int64_t now_ns)
+{
+    const auto identity = identity_of(frame);
+    if (started_ && identity.epoch != newest_.epoch) {
+        const double silence_s = std::max(silent_intervals * interval_s_, silent_at_least_s);
+        if (identity.epoch < newest_.epoch || static_cast<double>(now_ns - last_arrival_ns_) * 1e-9 < silence_s) {
+            ++counters_.foreign;
+            foreign_epoch_ = identity.epoch;
+            return false;
+        }
+    } else if (started_ && identity <= newest_) {
+        ++(identity == newest_ ? counters_.duplicates : counters_.late);
+        return false;
+    } else if (started_) {
+        counters_.gaps += identity.sequence - newest_.sequence - 1;
+    }
+    started_ = true;
+    newest_ = identity;
+    last_arrival_ns_ = now_ns;
+    if (std::isfinite(frame.interval_s)) interval_s_ = frame.interval_s;
+    return true;
+}
+
+const ClusterDescription* FrameIntake::description_for(const SensorFrame& frame) const
+{
+    for (std::size_t i = 0; i < description_count_; ++i) {
+        if (descriptions_[i].epoch == frame.epoch && descriptions_[i].revision == frame.description_revision) return &descriptions_[i];
+    }
+    return nullptr;
+}
+
+const FrameIntake::Accepted* FrameIntake::next()
+{
+    while (waiting_count_ > 0) {
+        const auto& frame = waiting_[waiting_begin_];
+        const auto* description = description_for(frame);
+        if (!description) return nullptr;
+        accepted_.frame = frame;
+        waiting_begin_ = (waiting_begin_ + 1) % waiting_capacity;
+        --waiting_count_;
+        accepted_.new_epoch = frame.epoch != last_handled_epoch_;
+        if (!clean(accepted_.frame, *description)) {
+            ++counters_.rejected_frames;
+            continue;
+        }
+        accepted_.new_description = !current_ || current_->epoch != description->epoch || current_->revision != description->revision;
+        if (accepted_.new_description) current_ = *description;
+        last_handled_epoch_ = accepted_.frame.epoch;
+        last_sample_time_ns_ = accepted_.frame.sample_time_ns;
+        ++counters_.accepted;
+        return &accepted_;
+    }
+    return nullptr;
+}
+
+bool FrameIntake::clean(SensorFrame& frame, const ClusterDescription& description)
+{
+    if (frame.axis_count != description.axis_count) return false;
+    if (!(frame.interval_s > 0) || !std::isfinite(frame.interval_s)) return false;
+    if (!accepted_.new_epoch && frame.sample_time_ns <= last_sample_time_ns_) return false;
+    for (std::size_t axis = 0; axis < frame.axis_count; ++axis) {
+        if (!has_axis(frame.valid_mask, axis)) continue;
+        const double limit = description.range[axis] * frame.interval_s * range_tolerance + description.quantum[axis];
+        const bool in_range = description.range[axis] == 0 || std::abs(frame.increment[axis]) <= limit;
+        if (std::isfinite(frame.increment[axis]) && std::isfinite(frame.accumulated[axis]) && in_range) continue;
+        frame.valid_mask &= ~axis_bit(axis);
+        ++counters_.rejected_values;
+    }
+    frame.valid_mask &= all_axes(frame.axis_count);
+    return true;
+}
+
+}  // namespace quorient::runtime

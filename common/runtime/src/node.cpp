@@ -1,0 +1,158 @@
+#include "quorient/runtime/node.hpp"
+
+#include "quorient/runtime/options.hpp"
+#include "quorient/runtime/text.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+#include <algorithm>
+
+namespace quorient::runtime {
+
+namespace {
+
+constexpr std::int64_t second_ns = 1'000'000'000;
+constexpr std::int64_t status_period_ns = second_ns / 2;
+constexpr std::int64_t match_patience_ns = 5 * second_ns;
+
+spdlog::level::level_enum level_of(Severity severity)
+{
+    switch (severity) {
+        case Severity::warning_low:
+        case Severity::warning_high:
+            return spdlog::level::warn;
+        case Severity::fatal:
+            return spdlog::level::critical;
+        default:
+            return spdlog::level::info;
+    }
+}
+
+}  // namespace
+
+Node::Node(NodeSettings settings, bus::Bus& bus, EventLoop& loop)
+    : settings_(std::move(settings)),
+      bus_(bus),
+      loop_(loop),
+      events_(bus.advertise(bus::topics::event)),
+      statuses_(bus.advertise(bus::topics::status)),
+      started_ns_(loop.clock().steady_ns())
+{
+    status_.unit = settings_.unit;
+    status_.service = settings_.service;
+    status_.process = static_cast<std::uint32_t>(::getpid());
+    status_.role = static_cast<std::uint8_t>(settings_.role);
+    status_.state = static_cast<std::uint8_t>(ServiceState::starting);
+    status_.vendor = static_cast<std::uint8_t>(bus.vendor());
+    copy_text(settings_.name, status_.name);
+    copy_text(version(), status_.version);
+    if (settings_.heartbeat) {
+        heartbeat_ = Heartbeat::open(settings_.name);
+        if (!heartbeat_)
+            spdlog::warn("{}: no heartbeat file in {}: `quorient health` will not see this service", settings_.name,
+                         run_directory().string());
+    }
+    loop_.every(status_period_ns, [this] {
+        look_at_endpoints();
+        publish_status();
+    });
+}
+
+Node::~Node()
+{
+    report(EventCode::goodbye, Severity::info, {status_.epoch, status_.sequence}, 0, "stops in order");
+    set_state(ServiceState::stopping);
+}
+
+void Node::report(EventCode code, Severity severity, Identity identity, std::uint32_t axes, std::string_view text, std::uint64_t request)
+{
+    HealthEvent event;
+    event.epoch = identity.epoch;
+    event.sequence = identity.sequence;
+    event.wall_time_ns = clock().wall_ns();
+    event.event_number = ++event_number_;
+    event.request = request;
+    event.unit = settings_.unit;
+    event.source = settings_.service;
+    event.axes = axes;
+    event.code = static_cast<std::uint8_t>(code);
+    event.severity = static_cast<std::uint8_t>(severity);
+    copy_text(settings_.name, event.source_name);
+    copy_text(text, event.text);
+    events_.publish(event);
+    if (settings_.log_events) spdlog::log(level_of(severity), "{}: {}", settings_.name, text);
+}
+
+void Node::report_throttled(EventCode code, Severity severity, Identity identity, std::uint32_t axes, std::string_view text)
+{
+    auto& last = last_told_ns_[static_cast<std::uint8_t>(code)];
+    const auto now = clock().steady_ns();
+    if (last != 0 && now - last < second_ns) return;
+    last = now;
+    report(code, severity, identity, axes, text);
+}
+
+void Node::set_state(ServiceState state)
+{
+    if (this->state() == state) return;
+    status_.state = static_cast<std::uint8_t>(state);
+    publish_status();
+}
+
+void Node::handled(Identity identity, std::int64_t arrival_ns)
+{
+    const auto now = clock().steady_ns();
+    status_.epoch = identity.epoch;
+    status_.sequence = identity.sequence;
+    ++status_.received;
+    latency_ns_[latency_count_++ % latency_ns_.size()] = now - arrival_ns;
+    if (heartbeat_) heartbeat_->beat(now, status_.received);
+}
+
+void Node::watch(std::string_view what, std::function<bus::EndpointStatus()> status, bool must_match)
+{
+    watched_.push_back({std::string{what}, std::move(status), must_match});
+}
+
+void Node::look_at_endpoints()
+{
+    for (auto& endpoint : watched_) {
+        const auto now = endpoint.status();
+        const Identity none;
+        if (now.incompatible > endpoint.incompatible) {
+            endpoint.incompatible = now.incompatible;
+            report(EventCode::incompatible_qos, Severity::warning_high, none, 0,
+                   fmt::format("{}: a peer asks for another {}; see the QoS table in idl/README.md", endpoint.what, now.policy));
+        }
+        if (endpoint.must_match && now.matched == 0 && !endpoint.told_unmatched && clock().steady_ns() - started_ns_ > match_patience_ns) {
+            endpoint.told_unmatched = true;
+            report(EventCode::no_match, Severity::warning_high, none, 0,
+                   fmt::format("{} matched nobody for 5 s: is the peer running, in this domain, on this network, with this IDL?",
+                               endpoint.what));
+        }
+    }
+}
+
+void Node::publish_status()
+{
+    status_.wall_time_ns = clock().wall_ns();
+    if (main_output_) {
+        const auto output = main_output_();
+        status_.matched = output.matched;
+        status_.transport = static_cast<std::uint8_t>(output.transport);
+    }
+    const auto count = std::min(latency_count_, latency_ns_.size());
+    if (count > 0) {
+        const auto begin = latency_ns_.begin();
+        std::sort(begin, begin + static_cast<std::ptrdiff_t>(count));
+        const auto quantile = [&](double q) {
+            return static_cast<double>(latency_ns_[static_cast<std::size_t>(q * static_cast<double>(count - 1))]) * 1e-9;
+        };
+        status_.latency_s = {quantile(0.5), quantile(0.9), quantile(0.99), quantile(1)};
+    }
+    latency_count_ = 0;
+    statuses_.publish(status_);
+}
+
+}  // namespace quorient::runtime

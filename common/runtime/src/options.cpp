@@ -1,0 +1,48 @@
+#include "quorient/runtime/options.hpp"
+
+#include "quorient/bus/settings.hpp"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+namespace quorient::runtime {
+
+tl::expected<Options, OptionsError> parse_options(int argc, char** argv, const std::string& description, const std::string& default_name)
+{
+    Options options;
+    options.name = default_name;
+    CLI::App app{description};
+    const std::string program = argc > 0 ? std::string{argv[0]}.substr(std::string{argv[0]}.find_last_of('/') + 1) : "service";
+    app.footer(
+        fmt::format("Example:\n  {} demo.yaml{}\nExit codes: 0 ended in order, 1 failed while running, 2 bad usage or configuration.",
+                    program, default_name.empty() ? " --name a-name-of-the-file" : ""));
+    app.set_version_flag("--version", version());
+    app.add_option("system", options.system_file, "The system file (YAML)")->required()->type_name("SYSTEM.yaml");
+    auto* name = app.add_option("--name", options.name, "This process's name in the system file");
+    if (default_name.empty()) name->required();
+    else name->capture_default_str();
+    std::string vendor;
+    app.add_option("--dds", vendor, "DDS vendor in place of the file's: fastdds or cyclonedds");
+    app.add_option("--domain", options.domain, "DDS domain in place of the file's");
+    app.add_option("--set", options.set, "A value in place of the file's, e.g. source.speed=2 (repeatable)")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+    try {
+        app.parse(argc, argv);
+        if (!vendor.empty()) {
+            const auto chosen = bus::vendor_from(vendor);
+            if (!chosen) throw CLI::ValidationError("--dds", chosen.error());
+            options.dds = *chosen;
+        }
+    } catch (const CLI::ParseError& error) {
+        return tl::make_unexpected(OptionsError{app.exit(error) == 0 ? 0 : 2});
+    }
+    return options;
+}
+
+std::string version()
+{
+    return QUORIENT_VERSION;
+}
+
+}  // namespace quorient::runtime

@@ -1,0 +1,48 @@
+#include "quorient/runtime/text.hpp"
+
+#include <fmt/format.h>
+#include <numeric>
+
+namespace quorient::runtime {
+
+namespace {
+
+/// Levenshtein distance.
+std::size_t edits(std::string_view a, std::string_view b)
+{
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = row[0]++;
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({substituted, row[j] + 1, row[j + 1] + 1});
+        }
+    }
+    return row.back();
+}
+
+}  // namespace
+
+std::string nearest_word(std::string_view word, const std::vector<std::string>& words)
+{
+    const auto nearest =
+        std::min_element(words.begin(), words.end(), [&](const auto& a, const auto& b) { return edits(word, a) < edits(word, b); });
+    if (nearest == words.end() || edits(word, *nearest) > 1 + word.size() / 3) return {};
+    return *nearest;
+}
+
+std::string describe_axes(std::uint32_t mask)
+{
+    std::string list;
+    int count = 0;
+    for (unsigned axis = 0; axis < 32; ++axis) {
+        if ((mask >> axis & 1U) == 0) continue;
+        list += fmt::format("{}{} (G{})", count++ ? ", " : "", axis, axis + 1);
+    }
+    if (count == 0) return "no axis";
+    return (count == 1 ? "axis " : "axes ") + list;
+}
+
+}  // namespace quorient::runtime

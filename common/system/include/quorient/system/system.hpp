@@ -1,0 +1,125 @@
+#pragma once
+
+#include "quorient/attitude/integrator.hpp"
+#include "quorient/bus/settings.hpp"
+#include "quorient/fdi/settings.hpp"
+#include "quorient/geometry/sensor_cluster.hpp"
+#include "quorient/runtime/node.hpp"
+#include "quorient/runtime/realtime.hpp"
+#include "quorient/simulation/instrument.hpp"
+#include "quorient/voting/voter_settings.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+#include <vector>
+
+namespace quorient::system {
+
+/// What every process of a system has.
+struct ProcessSettings {
+    runtime::NodeSettings node;
+    bus::Settings bus;
+    bool spin = false;  ///< spin instead of blocking
+    int priority = 0;   ///< SCHED_FIFO priority, 0 = ordinary scheduling
+    bool lock_memory = false;
+    std::vector<std::uint32_t> processors;  ///< allowed, empty = all
+};
+
+/// A log played as if the sensors were here.
+struct LogSettings {
+    std::string file;
+    double rest_s = 10;  ///< the log's beginning, at rest: biases and sigmas come from it
+    double from_s = 0;
+    std::optional<double> to_s;
+    std::vector<std::uint32_t> instruments;  ///< in use, empty = all
+};
+
+struct SourceSettings {
+    simulation::Scenario scenario;  ///< motion, rate, noise, faults; of a log only the faults and the seed count
+    std::optional<LogSettings> log;
+    double speed = 1;  ///< times real time
+};
+
+struct SensorSettings {
+    ProcessSettings process;
+    SourceSettings source;
+    std::optional<geometry::SensorCluster> cluster;  ///< of a simulation; a log brings its own
+    std::string unit_name;
+    double wait_s = 5;  ///< for the consumers, then it goes on without them
+    std::vector<std::string> consumers;
+    std::optional<std::array<double, 4>> initial_attitude;  ///< absent: the simulation's own, unknown for a log
+    SensorKind kind = SensorKind::gyro;
+};
+
+struct DetectorProcess {
+    ProcessSettings process;
+    std::uint32_t lane = 0;
+    std::uint32_t detector = 0;
+    SensorKind kind = SensorKind::gyro;
+    fdi::DetectorSettings detection;
+    fdi::VerdictSettings verdict;
+};
+
+struct IntegratorProcess {
+    ProcessSettings process;
+    std::uint32_t detector = 0;  ///< whose verdicts count
+    double patience = 0.2;       ///< fraction of an interval that a frame waits for its verdict
+    SensorKind kind = SensorKind::gyro;
+    attitude::IntegratorSettings integration;
+};
+
+struct VoterProcess {
+    ProcessSettings process;
+    voting::VoterSettings voting;
+};
+
+/// What a run must show; `quorient launch` checks it against the simulator's truth and says so in its exit code.
+struct Expectations {
+    std::optional<AxisMask> isolated;            ///< exactly these axes, by every lane
+    std::optional<std::string> instrument;       ///< exactly axes of this instrument, by every lane
+    std::optional<std::uint32_t> within_frames;  ///< from the fault's first frame to each lane's isolation
+    std::optional<double> final_error_rad;       ///< of the voted attitude against truth
+    bool no_gap = false;                         ///< of the voted stream
+
+    bool any() const { return isolated || instrument || within_frames || final_error_rad || no_gap; }
+};
+
+struct LaneProcess {
+    std::string name;
+    DetectorProcess detector;
+    IntegratorProcess integrator;
+};
+
+/// A whole system as its file describes it.
+struct System {
+    std::string file;
+    std::string name;
+    std::uint32_t unit = 0;
+    double interval_s = 0.005;
+    SensorSettings sensor;
+    std::vector<LaneProcess> lanes;
+    std::vector<VoterProcess> voters;
+    ProcessSettings monitor;  ///< for tools that look on
+    Expectations expectations;
+
+    /// The process of that name; an error that lists the names of this role.
+    tl::expected<DetectorProcess, std::string> detector(std::string_view process) const;
+    tl::expected<IntegratorProcess, std::string> integrator(std::string_view process) const;
+    tl::expected<VoterProcess, std::string> voter(std::string_view process) const;
+};
+
+/// What the command line sets in place of the file.
+struct Overrides {
+    std::optional<Vendor> dds;  ///< of every process
+    std::optional<std::uint32_t> domain;
+    std::vector<std::string>
+        set;  ///< `source.speed=2`, `source.faults+=axis=1,kind=zero`: values of the file, as runtime::assign takes them
+};
+
+/// Reads a system file. @returns every problem of the file at once, one per line with file:line:column, and how many there are.
+tl::expected<System, std::string> load(const std::string& file, const Overrides& overrides = {});
+
+}  // namespace quorient::system

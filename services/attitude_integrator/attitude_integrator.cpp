@@ -1,0 +1,187 @@
+#include "attitude_integrator.hpp"
+
+#include "quorient/geometry/sensor_cluster.hpp"
+#include "quorient/runtime/intake_report.hpp"
+#include "quorient/runtime/text.hpp"
+#include "quorient/runtime/words.hpp"
+
+#include <fmt/format.h>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+namespace quorient::integrator {
+
+namespace {
+
+constexpr std::int64_t readiness_period_ns = 20'000'000;
+
+double angle_deg(const std::array<double, 4>& rotation)
+{
+    const double sine = std::hypot(rotation[1], rotation[2], rotation[3]);
+    return 2 * std::atan2(sine, std::abs(rotation[0])) * 180 / std::numbers::pi;
+}
+
+bool is(const AttitudeState& attitude, AttitudeMode mode)
+{
+    return attitude.mode == static_cast<std::uint8_t>(mode);
+}
+
+}  // namespace
+
+AttitudeIntegrator::AttitudeIntegrator(const system::IntegratorProcess& settings, bus::Bus& bus, runtime::EventLoop& loop)
+    : settings_(settings),
+      node_(settings.process.node, bus, loop),
+      attitudes_(bus.advertise(bus::topics::attitude)),
+      patience_timer_(loop.timer([this] { publish_pending(); })),
+      intake_(settings.process.node.unit, settings.kind)
+{
+    node_.main_output([this] { return attitudes_.status(); });
+    node_.watch(
+        bus::topics::attitude.spec.name, [this] { return attitudes_.status(); }, true);
+    loop.on(bus.subscribe(bus::topics::cluster), [this](const ClusterDescription& description) {
+        intake_.describe(description);
+        handle_accepted();
+    });
+    loop.on(bus.subscribe(bus::topics::voter_output), [this](const VotedAttitude& voted) { on_voted(voted); });
+    loop.on(bus.subscribe(bus::topics::command), [this](const FaultCommand& command) { on_command(command); });
+    verdicts_ = &loop.on(bus.subscribe(bus::topics::verdict), [this](const FaultVerdict& verdict) { on_verdict(verdict); });
+    frames_ = &loop.on(bus.subscribe(bus::topics::frame), [this](const SensorFrame& frame) { on_frame(frame); });
+    node_.watch(
+        bus::topics::frame.spec.name, [this] { return frames_->status(); }, true);
+    node_.watch(
+        bus::topics::verdict.spec.name, [this] { return verdicts_->status(); }, true);
+    loop.every(readiness_period_ns, [this] { look_at_readiness(); });
+    loop.when_idle([this] { return integrator_ && integrator_->work(); });
+}
+
+void AttitudeIntegrator::look_at_readiness()
+{
+    if (node_.state() == ServiceState::starting && intake_.described() && frames_->status().matched > 0 &&
+        verdicts_->status().matched > 0 && attitudes_.status().matched > 0)
+        node_.set_state(ServiceState::ready);
+}
+
+void AttitudeIntegrator::on_frame(const SensorFrame& frame)
+{
+    arrival_ns_ = node_.clock().steady_ns();
+    if (!intake_.offer(frame, arrival_ns_)) return;
+    handle_accepted();
+    runtime::report_intake(intake_, node_, told_rejected_, told_foreign_);
+}
+
+void AttitudeIntegrator::handle_accepted()
+{
+    while (const auto* accepted = intake_.next()) {
+        publish_pending();
+        if (!integrator_ && !prepare(*intake_.description(), accepted->frame.sequence)) return;
+        integrate(accepted->frame);
+    }
+}
+
+/// The configured attitude is that at the start of sequence 0, and true only for who was there: who comes later, or after another epoch,
+/// takes over what the voters stand for.
+bool AttitudeIntegrator::prepare(const ClusterDescription& description, std::uint64_t first_sequence)
+{
+    auto integration = settings_.integration;
+    integration.initialised = first_sequence == 0 && !voted_;
+    if (description.initial_attitude_known) integration.initial_attitude = description.initial_attitude;
+    auto cluster = geometry::make_cluster(description);
+    auto made = cluster ? attitude::Integrator::make(integration, *cluster)
+                        : tl::expected<attitude::Integrator, std::string>{tl::make_unexpected(cluster.error())};
+    if (!made) {
+        node_.report(EventCode::rejected_input, Severity::fatal, {description.epoch, 0}, 0, made.error());
+        node_.loop().quit(2);
+        return false;
+    }
+    integrator_.emplace(std::move(*made));
+    if (!integration.initialised && voted_) integrator_->seed(*voted_);
+    if (verdict_) integrator_->apply(*verdict_);
+    return true;
+}
+
+void AttitudeIntegrator::integrate(const SensorFrame& frame)
+{
+    integrator_->add(frame);
+    pending_ = identity_of(frame);
+    stamps_ = frame.stamp_ns;
+    stamps_[static_cast<std::size_t>(Hop::integrator_in)] = node_.settings().stamps ? arrival_ns_ : 0;
+    node_.set_state(ServiceState::running);
+    if (verdict_ && identity_of(*verdict_) >= *pending_) publish_pending();
+    else patience_timer_.set(arrival_ns_ + static_cast<std::int64_t>(settings_.patience * frame.interval_s * 1e9));
+}
+
+void AttitudeIntegrator::on_verdict(const FaultVerdict& verdict)
+{
+    if (verdict.unit != settings_.process.node.unit || verdict.detector != settings_.detector) return;
+    if (verdict_ && identity_of(verdict) <= identity_of(*verdict_)) return;
+    verdict_ = verdict;
+    if (!integrator_) return;
+    integrator_->apply(verdict);
+    if (pending_ && identity_of(verdict) >= *pending_) {
+        stamps_[static_cast<std::size_t>(Hop::detector_in)] = verdict.stamp_ns[static_cast<std::size_t>(Hop::detector_in)];
+        stamps_[static_cast<std::size_t>(Hop::detector_out)] = verdict.stamp_ns[static_cast<std::size_t>(Hop::detector_out)];
+        publish_pending();
+    }
+}
+
+void AttitudeIntegrator::publish_pending()
+{
+    if (!pending_) return;
+    pending_.reset();
+    patience_timer_.cancel();
+    auto attitude = integrator_->state();
+    attitude.stamp_ns = stamps_;
+    attitude.stamp_ns[static_cast<std::size_t>(Hop::integrator_out)] = node_.stamp();
+    if (attitudes_.publish(attitude)) ++node_.status().published;
+    node_.handled(identity_of(attitude), arrival_ns_);
+    tell_changes(attitude);
+    last_ = attitude;
+}
+
+void AttitudeIntegrator::tell_changes(const AttitudeState& attitude)
+{
+    const auto identity = identity_of(attitude);
+    if (attitude.rolled_back_frames > 0)
+        node_.report(EventCode::rolled_back, Severity::info, identity, attitude.isolated_mask,
+                     fmt::format("attitude corrected by {:.3g} deg: {} frames integrated again without {}; {} axes in use",
+                                 angle_deg(attitude.reset_rotation), attitude.rolled_back_frames,
+                                 runtime::describe_axes(attitude.isolated_mask), std::popcount(attitude.used_mask)));
+    if (integrator_->history_too_short() > told_too_short_) {
+        told_too_short_ = integrator_->history_too_short();
+        node_.report(EventCode::history_too_short, Severity::warning_high, identity, attitude.isolated_mask,
+                     "a verdict reaches further back than the history: corrected as far as it goes");
+    }
+    if (attitude.bridged && !last_.bridged)
+        node_.report_throttled(EventCode::gap_bridged, Severity::warning_low, identity, 0,
+                               "frames are missing: bridged by the accumulated angles");
+    if (attitude.seeded && !last_.seeded)
+        node_.report(EventCode::seeded, Severity::info, identity, 0, "SEEDED: took over the voted attitude");
+    if (is(attitude, AttitudeMode::coasting) && !is(last_, AttitudeMode::coasting))
+        node_.report_throttled(EventCode::coasting, Severity::warning_high, identity, attitude.used_mask,
+                               "COASTING: fewer than three trusted axes, the attitude is held");
+    if (is(attitude, AttitudeMode::lost) && !is(last_, AttitudeMode::lost))
+        node_.report_throttled(EventCode::lost, Severity::warning_high, identity, 0,
+                               "LOST: the rotation in between is not known; re-align with a reset of the attitude");
+}
+
+void AttitudeIntegrator::on_voted(const VotedAttitude& voted)
+{
+    if (voted.unit != settings_.process.node.unit || (voted_ && identity_of(voted) < identity_of(*voted_))) return;
+    voted_ = voted;
+    if (integrator_ && is(integrator_->state(), AttitudeMode::initialising)) integrator_->seed(voted);
+}
+
+void AttitudeIntegrator::on_command(const FaultCommand& command)
+{
+    if (command.unit != settings_.process.node.unit || command.action != static_cast<std::uint8_t>(CommandAction::reset_attitude)) return;
+    double norm = 0;
+    for (const double component : command.attitude) norm += component * component;
+    const bool possible = integrator_ && std::abs(norm - 1) < 1e-6;
+    if (possible) integrator_->reset(command.attitude);
+    node_.report(possible ? EventCode::command_done : EventCode::command_refused, possible ? Severity::info : Severity::warning_low,
+                 identity_of(last_), 0, possible ? "attitude reset by command" : "cannot reset: no frame yet, or not a unit quaternion",
+                 command.request);
+}
+
+}  // namespace quorient::integrator

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "quorient/attitude/integrator.hpp"
+#include "quorient/runtime/frame_intake.hpp"
+#include "quorient/runtime/node.hpp"
+#include "quorient/system/system.hpp"
+
+#include <optional>
+
+namespace quorient::integrator {
+
+/// One attitude per frame. Promises: README.md.
+class AttitudeIntegrator {
+public:
+    AttitudeIntegrator(const system::IntegratorProcess& settings, bus::Bus& bus, runtime::EventLoop& loop);
+
+private:
+    void on_frame(const SensorFrame& frame);
+    void on_verdict(const FaultVerdict& verdict);
+    void on_voted(const VotedAttitude& voted);
+    void on_command(const FaultCommand& command);
+    void handle_accepted();
+    bool prepare(const ClusterDescription& description, std::uint64_t first_sequence);
+    void integrate(const SensorFrame& frame);
+    void publish_pending();
+    void tell_changes(const AttitudeState& attitude);
+    void look_at_readiness();
+
+    system::IntegratorProcess settings_;
+    runtime::Node node_;
+    bus::Publisher<AttitudeState> attitudes_;
+    bus::Subscription<SensorFrame>* frames_ = nullptr;
+    bus::Subscription<FaultVerdict>* verdicts_ = nullptr;
+    runtime::Timer& patience_timer_;
+    runtime::FrameIntake intake_;
+    std::optional<attitude::Integrator> integrator_;
+    std::optional<VotedAttitude> voted_;   ///< newest, until this integrator has started
+    std::optional<FaultVerdict> verdict_;  ///< newest of the lane's detector
+    std::optional<Identity> pending_;      ///< integrated, not yet published
+    AttitudeState last_;
+    Stamps stamps_{};
+    std::int64_t arrival_ns_ = 0;
+    std::uint64_t told_rejected_ = 0;
+    std::uint64_t told_foreign_ = 0;
+    std::uint64_t told_too_short_ = 0;
+};
+
+}  // namespace quorient::integrator

@@ -1,0 +1,168 @@
+#include "parity_fdi.hpp"
+
+#include "quorient/geometry/sensor_cluster.hpp"
+#include "quorient/runtime/intake_report.hpp"
+#include "quorient/runtime/text.hpp"
+#include "quorient/runtime/words.hpp"
+
+#include <fmt/format.h>
+
+namespace quorient::detector {
+
+namespace {
+
+constexpr std::int64_t readiness_period_ns = 20'000'000;
+
+}  // namespace
+
+ParityFdi::ParityFdi(const system::DetectorProcess& settings, bus::Bus& bus, runtime::EventLoop& loop)
+    : settings_(settings),
+      node_(settings.process.node, bus, loop),
+      verdicts_(bus.advertise(bus::topics::verdict)),
+      intake_(settings.process.node.unit, settings.kind)
+{
+    node_.main_output([this] { return verdicts_.status(); });
+    node_.watch(
+        bus::topics::verdict.spec.name, [this] { return verdicts_.status(); }, true);
+    loop.on(bus.subscribe(bus::topics::cluster), [this](const ClusterDescription& description) {
+        intake_.describe(description);
+        handle_accepted();
+    });
+    loop.on(bus.subscribe(bus::topics::attitude), [this](const AttitudeState& attitude) { on_lane_attitude(attitude); });
+    loop.on(bus.subscribe(bus::topics::command), [this](const FaultCommand& command) { on_command(command); });
+    frames_ = &loop.on(bus.subscribe(bus::topics::frame), [this](const SensorFrame& frame) { on_frame(frame); });
+    node_.watch(
+        bus::topics::frame.spec.name, [this] { return frames_->status(); }, true);
+    loop.every(readiness_period_ns, [this] { look_at_readiness(); });
+}
+
+void ParityFdi::look_at_readiness()
+{
+    if (node_.state() == ServiceState::starting && intake_.described() && frames_->status().matched > 0 && verdicts_.status().matched > 0)
+        node_.set_state(ServiceState::ready);
+}
+
+void ParityFdi::on_frame(const SensorFrame& frame)
+{
+    arrival_ns_ = node_.clock().steady_ns();
+    if (!intake_.offer(frame, arrival_ns_)) return;
+    handle_accepted();
+    runtime::report_intake(intake_, node_, told_rejected_, told_foreign_);
+}
+
+void ParityFdi::handle_accepted()
+{
+    while (const auto* accepted = intake_.next()) {
+        if (accepted->new_description && !prepare(*intake_.description())) return;
+        if (monitor_) assess(accepted->frame);
+    }
+}
+
+/// A new description makes a new detector; what was isolated stays so.
+bool ParityFdi::prepare(const ClusterDescription& description)
+{
+    auto cluster = geometry::make_cluster(description);
+    auto made = cluster ? fdi::FaultMonitor::make(settings_.detection, settings_.verdict, *cluster)
+                        : tl::expected<fdi::FaultMonitor, std::string>{tl::make_unexpected(cluster.error())};
+    if (!made) {
+        node_.report(EventCode::rejected_input, Severity::fatal, {description.epoch, 0}, 0, made.error());
+        node_.loop().quit(2);
+        return false;
+    }
+    monitor_ = std::move(*made);
+    if (last_.isolated_mask != 0) {
+        // Sequences start again with the epoch: what was bad before is bad from its first frame.
+        std::array<std::uint64_t, max_axes> excluded_from = last_.excluded_from;
+        for (auto& sequence : excluded_from) sequence = sequence == never ? never : 0;
+        monitor_->adopt(excluded_from);
+    }
+    adopt_from_lane();
+    return true;
+}
+
+void ParityFdi::assess(const SensorFrame& frame)
+{
+    FaultVerdict verdict = monitor_->assess(frame);
+    verdict.unit = settings_.process.node.unit;
+    verdict.kind = frame.kind;
+    verdict.detector = settings_.detector;
+    verdict.stamp_ns = frame.stamp_ns;
+    verdict.stamp_ns[static_cast<std::size_t>(Hop::detector_in)] = node_.settings().stamps ? arrival_ns_ : 0;
+    verdict.stamp_ns[static_cast<std::size_t>(Hop::detector_out)] = node_.stamp();
+    if (verdicts_.publish(verdict)) ++node_.status().published;
+    node_.handled(identity_of(frame), arrival_ns_);
+    node_.set_state(ServiceState::running);
+    tell_changes(verdict);
+    last_ = verdict;
+}
+
+void ParityFdi::tell_changes(const FaultVerdict& verdict)
+{
+    const auto identity = identity_of(verdict);
+    const auto newly_isolated = verdict.isolated_mask & ~last_.isolated_mask;
+    if (newly_isolated != 0) {
+        std::uint64_t onset = never;
+        for (std::size_t axis = 0; axis < max_axes; ++axis) {
+            if (has_axis(newly_isolated, axis)) onset = std::min(onset, verdict.excluded_from[axis]);
+        }
+        node_.report(verdict.adopted ? EventCode::adopted : EventCode::isolated, Severity::warning_high, identity, newly_isolated,
+                     fmt::format("{} {} since frame {}: statistic {:.4g}, limit {:.4g}", verdict.adopted ? "ADOPTED" : "ISOLATED",
+                                 runtime::describe_axes(newly_isolated), onset, verdict.statistic, verdict.threshold));
+        if (verdict.detectable_remaining == 0)
+            node_.report(EventCode::redundancy_exhausted, Severity::warning_high, identity, verdict.working_mask,
+                         "redundancy is used up: a further fault cannot be told");
+    }
+    const auto readmitted = last_.isolated_mask & ~verdict.isolated_mask;
+    if (readmitted != 0)
+        node_.report(EventCode::readmitted, Severity::info, identity, readmitted,
+                     fmt::format("READMITTED {}", runtime::describe_axes(readmitted)));
+    if (verdict.state == last_.state || newly_isolated != 0) return;
+    switch (static_cast<VerdictState>(verdict.state)) {
+        case VerdictState::ambiguous:
+            node_.report_throttled(EventCode::ambiguous, Severity::warning_high, identity, verdict.suspect_mask,
+                                   fmt::format("AMBIGUOUS: {} candidate sets, one of {} is faulty", verdict.candidate_count,
+                                               runtime::describe_axes(verdict.suspect_mask)));
+            break;
+        case VerdictState::blind:
+            node_.report_throttled(EventCode::blind, Severity::warning_high, identity, 0,
+                                   "BLIND: no set of faults within reach explains the data");
+            break;
+        case VerdictState::suspect:
+            node_.report_throttled(EventCode::suspect, Severity::warning_low, identity, verdict.suspect_mask,
+                                   fmt::format("SUSPECT {}: statistic {:.4g}, limit {:.4g}", runtime::describe_axes(verdict.suspect_mask),
+                                               verdict.statistic, verdict.threshold));
+            break;
+        default:
+            break;
+    }
+}
+
+/// After a restart the lane remembers what this detector had found.
+void ParityFdi::on_lane_attitude(const AttitudeState& attitude)
+{
+    if (attitude.unit != settings_.process.node.unit || attitude.lane != settings_.lane || attitude.isolated_mask == 0) return;
+    lane_memory_ = attitude;
+    const bool warming_up = last_.state == static_cast<std::uint8_t>(VerdictState::warming_up) || last_.state == 0;
+    if (monitor_ && warming_up) adopt_from_lane();
+}
+
+void ParityFdi::adopt_from_lane()
+{
+    if (!lane_memory_) return;
+    auto excluded_from = lane_memory_->excluded_from;
+    if (lane_memory_->epoch != intake_.description()->epoch) {
+        for (auto& sequence : excluded_from) sequence = sequence == never ? never : 0;
+    }
+    monitor_->adopt(excluded_from);
+}
+
+void ParityFdi::on_command(const FaultCommand& command)
+{
+    if (command.unit != settings_.process.node.unit || command.action != static_cast<std::uint8_t>(CommandAction::readmit)) return;
+    const bool done = monitor_ && monitor_->readmit(command.axes);
+    node_.report(done ? EventCode::command_done : EventCode::command_refused, done ? Severity::info : Severity::warning_low,
+                 identity_of(last_), command.axes,
+                 fmt::format("{} {}", done ? "readmits" : "has not isolated", runtime::describe_axes(command.axes)), command.request);
+}
+
+}  // namespace quorient::detector

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <sys/types.h>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace quorient::launch {
+
+/// One child and what became of it.
+struct Child {
+    std::string name;
+    std::vector<std::string> command;
+    std::string log_file;
+    pid_t process = -1;
+    int restarts = 0;
+    bool ended = false;  ///< in order (exit 0) or for good (exit 2: a restart cannot help)
+    int exit_code = 0;
+    std::int64_t restart_at_ns = 0;
+};
+
+/// Starts, restarts and stops the processes of a system. Children die with this process, however it ends.
+class Processes {
+public:
+    ~Processes();
+
+    /// Started again whenever it dies, unless it ended in order or with exit code 2.
+    void add(std::string name, std::vector<std::string> command, std::string log_file);
+
+    void start();
+
+    /// Reaps the dead and starts again what is due. @returns the names of those that died since the last call.
+    std::vector<std::string> look(std::int64_t now_ns);
+
+    /// SIGTERM to all; SIGKILL after 2 s to who is left.
+    void stop();
+
+    const Child* find(const std::string& name) const;
+    const std::vector<Child>& all() const { return children_; }
+
+private:
+    std::vector<Child> children_;
+};
+
+}  // namespace quorient::launch

@@ -1,0 +1,48 @@
+#include "json_output.hpp"
+
+#include <gtest/gtest.h>
+#include <cmath>
+#include <limits>
+
+namespace quorient::cli {
+namespace {
+
+TEST(JsonOutput, has_seventeen_significant_digits)
+{
+    EXPECT_EQ(dump({{"tenth", 0.1}, {"half", 0.5}, {"small", 1e-300}}),
+              R"({"tenth":0.10000000000000001,"half":0.5,"small":1.0000000000000001e-300})");
+}
+
+TEST(JsonOutput, reads_back_to_the_same_bits)
+{
+    for (const double value :
+         {1.0 / 3, 6.02214076e23, -0.0, std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()}) {
+        const double back = Json::parse(dump(value)).get<double>();
+        EXPECT_EQ(back, value);
+        EXPECT_EQ(std::signbit(back), std::signbit(value));
+    }
+}
+
+TEST(JsonOutput, writes_null_for_what_is_not_finite)
+{
+    EXPECT_EQ(dump({{"a", std::nan("")}, {"b", {1.0, INFINITY}}, {"c", nullptr}}), R"({"a":null,"b":[1,null],"c":null})");
+}
+
+TEST(JsonOutput, keeps_order_and_escapes_text)
+{
+    EXPECT_EQ(dump({{"z", "say \"hi\""}, {"a", true}, {"n", 3}, {"empty", Json::array()}, {"none", Json::object()}}),
+              R"({"z":"say \"hi\"","a":true,"n":3,"empty":[],"none":{}})");
+}
+
+TEST(JsonOutput, writes_matrices_by_rows_and_masks_by_axes)
+{
+    Eigen::Matrix<double, 2, 3> matrix;
+    matrix << 1, 2, 3, 4, 5, 6;
+    EXPECT_EQ(dump(matrix_json(matrix)), "[[1,2,3],[4,5,6]]");
+    EXPECT_EQ(dump(vector_json(matrix.row(1))), "[4,5,6]");
+    EXPECT_EQ(dump(matrix_json(Eigen::MatrixXd(0, 3))), "[]");
+    EXPECT_EQ(dump(axes_json(0b10010)), "[1,4]");
+}
+
+}  // namespace
+}  // namespace quorient::cli

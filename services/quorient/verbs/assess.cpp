@@ -1,0 +1,156 @@
+#include "assess_methods.hpp"
+#include "cluster_input.hpp"
+#include "csv_input.hpp"
+#include "failure.hpp"
+#include "json_output.hpp"
+#include "verbs.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace quorient::cli {
+
+namespace {
+
+constexpr std::array<std::string_view, 7> outcome_names{"warming_up", "healthy", "suspect", "isolated", "ambiguous", "refused", "blind"};
+
+struct AssessOptions {
+    ClusterChoice choice;
+    fdi::DetectorSettings settings;
+    std::vector<double> direction;
+    std::string file = "-";
+    std::string check;
+};
+
+std::string_view name_of(fdi::Outcome outcome)
+{
+    return outcome_names[static_cast<std::size_t>(outcome)];
+}
+
+const AssessMethod& method_of(const AssessOptions& options)
+{
+    return *std::find_if(assess_methods().begin(), assess_methods().end(),
+                         [&](const AssessMethod& method) { return method.name == options.settings.method; });
+}
+
+/// An option that the method would ignore is a mistake, not a wish.
+void refuse_foreign_options(const CLI::App& verb, const AssessMethod& method)
+{
+    for (const AssessMethod& other : assess_methods())
+        for (const std::string& option : other.options)
+            if (verb.count(option) > 0 && std::find(method.options.begin(), method.options.end(), option) == method.options.end())
+                fail(fmt::format("{} means nothing to method {}, which takes {}", option, method.name, fmt::join(method.options, ", ")));
+}
+
+std::optional<Eigen::Vector3d> direction_of(const AssessOptions& options)
+{
+    if (options.direction.empty()) return {};
+    if (options.direction.size() != 3) fail("--direction takes three numbers, as in 0,0,1");
+    const Eigen::Vector3d direction(options.direction[0], options.direction[1], options.direction[2]);
+    if (!direction.allFinite() || direction.isZero()) fail("--direction must be finite and not zero");
+    return direction;
+}
+
+Json row_json(std::size_t row, const fdi::Assessment& assessment, std::size_t axes)
+{
+    Json candidates = Json::array();
+    for (std::size_t k = 0; k < assessment.candidate_count; ++k) candidates.push_back(axes_json(assessment.candidate[k]));
+    Json residual = Json::array();
+    for (std::size_t axis = 0; axis < axes; ++axis) residual.push_back(assessment.residual[axis]);
+
+    Json object;
+    object["row"] = row;
+    object["outcome"] = name_of(assessment.outcome);
+    object["isolated"] = axes_json(assessment.outcome == fdi::Outcome::isolated ? assessment.isolated : 0);
+    object["candidates"] = std::move(candidates);
+    object["statistic"] = assessment.statistic;
+    object["threshold"] = assessment.threshold;
+    object["residual"] = std::move(residual);
+    return object;
+}
+
+void run(const AssessOptions& options, const CLI::App& verb)
+{
+    refuse_foreign_options(verb, method_of(options));
+    if (options.choice.name().empty()) fail("which axes? --layout NAME of the catalogue (quorient layout lists it), or --axes FILE");
+    const auto cluster = load_cluster(options.choice);
+    if (!cluster) fail(cluster.error());
+    auto assessor = make_assessor(options.settings, *cluster, direction_of(options));
+    if (!assessor) fail(assessor.error());
+    auto input = CsvReader::open(options.file, {.columns = cluster->size()});
+    if (!input) fail(input.error());
+
+    bool as_expected = true;
+    CsvRow row;
+    fdi::Assessment assessment;
+    for (std::size_t number = 0;; ++number) {
+        const auto more = input->next(row);
+        if (!more) fail(more.error());
+        if (!*more) break;
+        assessor->detector->assess(
+            {.identity = {.epoch = 1, .sequence = number}, .interval_s = 1, .increment = row.value, .valid = cluster->all()}, assessment);
+        Json object = row_json(number, assessment, cluster->size());
+        assessor->add_fields(assessment, object);
+        fmt::print("{}\n", dump(object));
+        as_expected = as_expected && (options.check.empty() || options.check == name_of(assessment.outcome));
+    }
+    if (!as_expected) throw CLI::RuntimeError(1);
+}
+
+void add_method_options(CLI::App& verb, AssessOptions& options)
+{
+    fdi::DetectorSettings& settings = options.settings;
+    std::vector<std::string> names;
+    for (const AssessMethod& method : assess_methods()) names.push_back(method.name);
+    verb.add_option("--method", settings.method, "how to judge a row")->required()->check(CLI::IsMember(names));
+    verb.add_option("--tolerance", settings.tolerance,
+                    "invariants: of |v'z|, v of unit norm; voting: of a difference's norm; mean: of "
+                    "sqrt(SSE); extrapolation, vector: of |v'z|");
+    verb.add_option("--sigma", settings.sigma, "standard deviation of one axis's noise");
+    verb.add_option("--pfa", settings.pfa, "probability of a false alarm per row (default 1e-6)");
+    verb.add_option("--bound", settings.bound, "largest regular error of one axis");
+    verb.add_option("--threshold", settings.threshold,
+                    "A: errors beyond it are faults (default: the least with which regular errors are never undecided)");
+    verb.add_option("--max-faults", settings.max_faults,
+                    "most simultaneous faults that are looked for (default 2, as far as the axes allow)");
+    verb.add_option("--margin", settings.margin,
+                    "explanations that differ by less are ambiguous, in units of sigma^2 (default: subset 9, else 0)");
+    verb.add_option("--direction", options.direction, "guaranteed: also the interval along this body vector, as in 0,0,1")->delimiter(',');
+    verb.add_flag("--instruments", settings.instruments, "subset: a fault takes a whole instrument");
+    verb.add_flag("--relaxed", settings.relaxed, "invariants: where no pattern fits, leave out what the best quadruple leaves out");
+}
+
+}  // namespace
+
+void add_assess(CLI::App& program)
+{
+    auto* verb = program.add_subcommand("assess", "Judges rows of measurements: which axes lie? One JSON object per row.");
+    std::string footer =
+        "One measurement per row, one number per axis, in any unit; --sigma, --bound, --threshold and --tolerance are in the same.\n"
+        "Axes are 0-based, rows too. Fields of each method beside the common ones:\n";
+    for (const AssessMethod& method : assess_methods())
+        if (!method.fields.empty()) footer += fmt::format("  {:<14}{}\n", method.name, method.fields);
+    footer +=
+        "\nExample: two of six gyros are wrong (deg/h)\n"
+        "  echo -393.04,1075.35,-612.73,-593.11,1254.79,-761.19 |\n"
+        "    quorient assess --method guaranteed --layout guaranteed-cone --bound 1 --threshold 10\n";
+    verb->footer(footer);
+
+    const auto options = std::make_shared<AssessOptions>();
+    add_cluster_options(*verb, options->choice);
+    add_method_options(*verb, *options);
+    verb->add_option("file", options->file, "CSV of measurements; '-' = stdin")->option_text("FILE");
+    verb->add_flag_function(
+        "--json", [](std::int64_t) {}, "one JSON object per row, which is the only format");
+    verb->add_option("--check", options->check, "exit 1 unless this is the outcome of every row")
+        ->check(CLI::IsMember(std::vector<std::string>(outcome_names.begin(), outcome_names.end())));
+    verb->callback([options, verb] { run(*options, *verb); });
+}
+
+}  // namespace quorient::cli

@@ -1,0 +1,89 @@
+#include "message_json.hpp"
+#include "quorient/bus/topics.hpp"
+#include "quorient/runtime/event_loop.hpp"
+#include "quorient/runtime/signals.hpp"
+#include "system_options.hpp"
+#include "verbs.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <memory>
+
+namespace quorient::cli {
+
+namespace {
+
+struct EchoOptions {
+    BusOptions bus;
+    std::string topic;
+    std::uint64_t count = 0;
+    double timeout_s = 0;
+    bool json = false;
+};
+
+/// `frame` stands for `quorient/frame`.
+std::string full_name(const std::string& topic)
+{
+    return topic.find('/') == std::string::npos ? "quorient/" + topic : topic;
+}
+
+template <class Message>
+void show(const Message& message, bool json)
+{
+    const auto fields = message_json(message);
+    if (json) {
+        fmt::print("{}\n", dump(fields));
+    } else {
+        for (const auto& [name, value] : fields.items()) fmt::print("{}: {}\n", name, dump(value));
+        fmt::print("---\n");
+    }
+    std::fflush(stdout);
+}
+
+int echo(const EchoOptions& options)
+{
+    const auto bus = options.bus.open("quorient-echo");
+    const runtime::SystemClock clock;
+    runtime::EventLoop loop{*bus, clock, runtime::termination_requested()};
+    std::uint64_t shown = 0;
+    bool known = false;
+    std::vector<std::string> names;
+    const auto subscribe_if_named = [&](const auto& topic) {
+        using Message = typename std::decay_t<decltype(topic)>::Message;
+        names.emplace_back(topic.spec.name);
+        if (full_name(options.topic) != topic.spec.name) return;
+        known = true;
+        loop.on(bus->subscribe(topic), [&](const Message& message) {
+            if (options.count != 0 && shown == options.count) return;
+            show(message, options.json);
+            if (++shown == options.count) loop.quit(0);
+        });
+    };
+    std::apply([&](const auto&... topic) { (subscribe_if_named(topic), ...); }, bus::topics::all);
+    if (!known) {
+        fmt::print(stderr, "unknown topic '{}'; known are {}\n", options.topic, fmt::join(names, ", "));
+        return 2;
+    }
+    if (options.timeout_s > 0)
+        loop.timer([&] { loop.quit(1); }).set(clock.steady_ns() + static_cast<std::int64_t>(options.timeout_s * 1e9));
+    return loop.run();
+}
+
+}  // namespace
+
+void add_echo(CLI::App& program)
+{
+    auto* verb = program.add_subcommand("echo", "Print the samples of a topic");
+    auto options = std::make_shared<EchoOptions>();
+    options->bus.add_to(*verb);
+    verb->add_option("topic", options->topic, "quorient/voter_output, or voter_output")->required();
+    verb->add_option("--count", options->count, "End after so many samples; 0 = go on");
+    verb->add_option("--timeout", options->timeout_s, "End with exit code 1 after so many seconds; 0 = go on");
+    verb->add_flag("--json", options->json, "One JSON object per sample");
+    verb->footer("Example:\n  quorient echo voter_output --count 3 --json");
+    verb->callback([options] {
+        if (const int exit_code = echo(*options); exit_code != 0) throw CLI::RuntimeError(exit_code);
+    });
+}
+
+}  // namespace quorient::cli

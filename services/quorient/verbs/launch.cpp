@@ -1,0 +1,171 @@
+#include "../launch/processes.hpp"
+#include "../launch/screen.hpp"
+#include "../live/run_observer.hpp"
+#include "../live/summary.hpp"
+#include "json_output.hpp"
+#include "quorient/runtime/event_loop.hpp"
+#include "quorient/runtime/heartbeat.hpp"
+#include "quorient/runtime/signals.hpp"
+#include "system_options.hpp"
+#include "verbs.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+
+namespace quorient::cli {
+
+namespace {
+
+constexpr std::int64_t second_ns = 1'000'000'000;
+
+/// After the source has ended: the last frame's way through the pipeline, then everybody's goodbye.
+constexpr std::int64_t linger_ns = second_ns;
+
+struct LaunchOptions {
+    SystemOptions system;
+    std::optional<double> duration_s;
+    bool json = false;
+};
+
+/// Children leave heartbeats and logs; /run/quorient belongs to root.
+std::filesystem::path prepare_run_directory()
+{
+    std::error_code refused;
+    std::filesystem::create_directories(runtime::run_directory(), refused);
+    if (::access(runtime::run_directory().c_str(), W_OK) != 0) {
+        const auto own = std::filesystem::temp_directory_path() / fmt::format("quorient-{}", ::getuid());
+        std::filesystem::create_directories(own);
+        ::setenv("QUORIENT_RUN_DIR", own.c_str(), 1);
+    }
+    return runtime::run_directory();
+}
+
+/// The services stand beside this program.
+std::string program(const char* name)
+{
+    return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / name).string();
+}
+
+void add_processes(const system::System& system, const SystemOptions& options, launch::Processes& processes)
+{
+    const auto run_directory = prepare_run_directory();
+    const auto add = [&](const char* service, const std::string& name) {
+        std::vector<std::string> command{program(service), options.file, "--name", name};
+        if (!options.dds.empty()) command.insert(command.end(), {"--dds", options.dds});
+        if (options.domain) command.insert(command.end(), {"--domain", std::to_string(*options.domain)});
+        for (const auto& assignment : options.assignments()) command.insert(command.end(), {"--set", assignment});
+        processes.add(name, std::move(command), (run_directory / (name + ".log")).string());
+    };
+    for (const auto& voter : system.voters) add("quorient-voter", voter.process.node.name);
+    for (const auto& lane : system.lanes) {
+        add("quorient-attitude", lane.integrator.process.node.name);
+        add("quorient-fdi", lane.detector.process.node.name);
+    }
+    add("quorient-sensor", system.sensor.process.node.name);
+}
+
+/// One run from start to summary.
+class Run {
+public:
+    Run(const LaunchOptions& options, const system::System& system, bus::Bus& bus)
+        : options_(options),
+          system_(system),
+          observer_(system),
+          screen_(system, observer_, options.json),
+          loop_(bus, clock_, runtime::termination_requested())
+    {
+        loop_.on(bus.subscribe(bus::topics::cluster), [this](const ClusterDescription& m) { observer_.on_description(m); });
+        loop_.on(bus.subscribe(bus::topics::truth), [this](const TruthState& m) { observer_.on_truth(m); });
+        loop_.on(bus.subscribe(bus::topics::verdict), [this](const FaultVerdict& m) { observer_.on_verdict(m); });
+        loop_.on(bus.subscribe(bus::topics::frame), [this](const SensorFrame& m) { observer_.on_frame(m); });
+        loop_.on(bus.subscribe(bus::topics::attitude), [this](const AttitudeState& m) { observer_.on_attitude(m); });
+        loop_.on(bus.subscribe(bus::topics::voter_output), [this](const VotedAttitude& m) { observer_.on_voted(m); });
+        loop_.on(bus.subscribe(bus::topics::event), [this](const HealthEvent& m) { screen_.on_event(m); });
+        add_processes(system, options.system, processes_);
+    }
+
+    int run()
+    {
+        processes_.start();
+        auto& end = loop_.timer([this] { loop_.quit(0); });
+        loop_.every(second_ns / 20, [this, &end] { look_at_processes(end); });
+        loop_.every(second_ns / 5, [this] { screen_.draw(processes_); });
+        if (options_.duration_s) end.set(clock_.steady_ns() + static_cast<std::int64_t>(*options_.duration_s * second_ns));
+        loop_.run();
+        screen_.draw(processes_);
+        processes_.stop();
+        return conclude();
+    }
+
+private:
+    void look_at_processes(runtime::Timer& end)
+    {
+        for (const auto& name : processes_.look(clock_.steady_ns())) {
+            const auto& child = *processes_.find(name);
+            if (name == system_.sensor.process.node.name && child.exit_code == 0) end.set(clock_.steady_ns() + linger_ns);
+            else if (child.exit_code != 0) tell_death(child);
+        }
+    }
+
+    void tell_death(const launch::Child& child)
+    {
+        fmt::print(stderr, "{} ended with exit code {}{}; its log: {}\n", child.name, child.exit_code,
+                   child.ended ? "" : ", starting it again", child.log_file);
+        if (child.ended) {
+            failed_ = true;
+            loop_.quit(1);
+        }
+    }
+
+    int conclude()
+    {
+        const auto failures = live::unmet(system_, observer_);
+        if (options_.json) fmt::print("{}\n", dump(live::summary_json(system_, observer_)));
+        else fmt::print("\n{}", live::summary_text(system_, observer_));
+        for (const auto& failure : failures) fmt::print(stderr, "not as expected: {}\n", failure);
+        if (!options_.json && system_.expectations.any() && failures.empty() && !failed_) fmt::print("as expected\n");
+        return failed_ || !failures.empty() ? 1 : 0;
+    }
+
+    const LaunchOptions& options_;
+    const system::System& system_;
+    runtime::SystemClock clock_;
+    live::RunObserver observer_;
+    launch::Screen screen_;
+    runtime::EventLoop loop_;
+    launch::Processes processes_;
+    bool failed_ = false;
+};
+
+int launch_system(const LaunchOptions& options)
+{
+    const auto system = options.system.load();
+    const auto bus = bus::open(system.monitor.bus);
+    if (!bus) {
+        fmt::print(stderr, "{}\n", bus.error());
+        return 2;
+    }
+    return Run{options, system, **bus}.run();
+}
+
+}  // namespace
+
+void add_launch(CLI::App& program)
+{
+    auto* verb = program.add_subcommand(
+        "launch", "Start the processes of a system file, restart those that die, show a live table, end with a summary");
+    auto options = std::make_shared<LaunchOptions>();
+    options->system.add_to(*verb);
+    verb->add_option("--duration", options->duration_s, "Stop after so many seconds; else when the source ends")->type_name("S");
+    verb->add_flag("--json", options->json, "The summary as JSON, nothing else on stdout");
+    verb->footer(
+        "Exit code 1 if the file's `expect` is not met.\nExample:\n  quorient launch deploy/configurations/demo.yaml --dds fastdds");
+    verb->callback([options] {
+        if (const int exit_code = launch_system(*options); exit_code != 0) throw CLI::RuntimeError(exit_code);
+    });
+}
+
+}  // namespace quorient::cli

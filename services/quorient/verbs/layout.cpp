@@ -1,0 +1,82 @@
+#include "cluster_input.hpp"
+#include "failure.hpp"
+#include "json_output.hpp"
+#include "layout_report.hpp"
+#include "layout_table.hpp"
+#include "quorient/geometry/layouts.hpp"
+#include "verbs.hpp"
+
+#include <fmt/format.h>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace quorient::cli {
+
+namespace {
+
+struct LayoutOptions {
+    ClusterChoice choice;
+    std::vector<std::size_t> without;
+    bool table = false;
+    bool json = false;
+};
+
+void print_catalogue(bool as_json)
+{
+    Json list = Json::array();
+    for (const geometry::CatalogueEntry& entry : geometry::catalogue()) {
+        if (as_json) list.push_back({{"name", entry.name}, {"source", entry.source}});
+        else fmt::print("{:<26}{}\n", entry.name, entry.source);
+    }
+    if (as_json) fmt::print("{}\n", dump(list));
+}
+
+AxisMask axes_left(const LayoutOptions& options, const geometry::SensorCluster& cluster)
+{
+    AxisMask used = cluster.all();
+    for (const std::size_t axis : options.without) {
+        if (axis >= cluster.size()) fail(fmt::format("--without {}: {} has axes 0..{}", axis, options.choice.name(), cluster.size() - 1));
+        used &= ~axis_bit(axis);
+    }
+    return used;
+}
+
+void print_layout(const LayoutOptions& options)
+{
+    const auto cluster = load_cluster(options.choice);
+    if (!cluster) fail(cluster.error());
+    const AxisMask used = axes_left(options, *cluster);
+    if (options.json) fmt::print("{}\n", dump(layout_json(options.choice.name(), *cluster, used)));
+    else fmt::print("{}", layout_text(options.choice.name(), *cluster, used));
+}
+
+void run(const LayoutOptions& options)
+{
+    if (options.table) fmt::print("{}", options.json ? dump(papers_tables_json()) + '\n' : papers_tables_text());
+    else if (!options.choice.name().empty()) print_layout(options);
+    else if (!options.without.empty()) fail("--without needs a layout: name one of the catalogue, or give --axes FILE");
+    else print_catalogue(options.json);
+}
+
+}  // namespace
+
+void add_layout(CLI::App& program)
+{
+    auto* verb = program.add_subcommand("layout", "Figures of a sensor layout: accuracy, parity equations, what faults they show.");
+    verb->footer(
+        "Without NAME, lists the catalogue. Axes are 0-based.\n\n"
+        "Example: the dodecahedron after its first two axes have failed\n"
+        "  quorient layout dodecahedron --without 0,1\n");
+    const auto options = std::make_shared<LayoutOptions>();
+    auto* name = verb->add_option("name", options->choice.layout, "a layout of the catalogue")->option_text("NAME");
+    auto* axes = verb->add_option("--axes", options->choice.axes_file, "a file of unit vectors, one axis per row: x, y, z; '-' = stdin");
+    auto* without = verb->add_option("--without", options->without, "axes to leave out, as in 0,3")->delimiter(',');
+    auto* table = verb->add_flag("--table", options->table, "the papers' tables beside ours, with the reason of every difference");
+    verb->add_flag("--json", options->json, "one line of JSON, 17 significant digits, null where undefined");
+    axes->excludes(name);
+    table->excludes(name)->excludes(axes)->excludes(without);
+    verb->callback([options] { run(*options); });
+}
+
+}  // namespace quorient::cli

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "json_output.hpp"
+#include "quorient/geometry/sensor_cluster.hpp"
+
+#include <string>
+
+namespace quorient::cli {
+
+/// All figures of a cluster with some axes left out, in the fields of the verb's contract (cli.md); undefined ones are null.
+/// Axes are renumbered from 0, instruments keep their numbers.
+Json layout_json(const std::string& name, const geometry::SensorCluster& cluster, AxisMask used);
+
+/// The same to read.
+std::string layout_text(const std::string& name, const geometry::SensorCluster& cluster, AxisMask used);
+
+}  // namespace quorient::cli

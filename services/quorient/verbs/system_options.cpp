@@ -1,0 +1,77 @@
+#include "system_options.hpp"
+
+#include <fmt/format.h>
+
+namespace quorient::cli {
+
+void BusOptions::add_to(CLI::App& verb)
+{
+    verb.add_option("--dds", dds, "fastdds or cyclonedds")->capture_default_str();
+    verb.add_option("--domain", domain, "DDS domain")->capture_default_str();
+    verb.add_option("--interface", interface, "Network interface by name, address or subnet")->capture_default_str();
+    verb.add_option("--unit", unit, "Unit id")->capture_default_str();
+}
+
+std::unique_ptr<bus::Bus> BusOptions::open(const std::string& participant) const
+{
+    const auto vendor = bus::vendor_from(dds);
+    if (!vendor) {
+        fmt::print(stderr, "--dds: {}\n", vendor.error());
+        throw CLI::RuntimeError(2);
+    }
+    bus::Settings settings;
+    settings.vendor = *vendor;
+    settings.domain = domain;
+    settings.interface = interface;
+    settings.participant = participant;
+    auto opened = bus::open(settings);
+    if (!opened) {
+        fmt::print(stderr, "{}\n", opened.error());
+        throw CLI::RuntimeError(2);
+    }
+    return std::move(*opened);
+}
+
+void SystemOptions::add_to(CLI::App& verb)
+{
+    verb.add_option("system", file, "The system file (YAML)")->required()->type_name("SYSTEM.yaml");
+    verb.add_option("--dds", dds, "DDS vendor of every process in place of the file's: fastdds or cyclonedds");
+    verb.add_option("--domain", domain, "DDS domain in place of the file's");
+    verb.add_option("--set", set, "A value in place of the file's, e.g. source.duration_s=5 (repeatable)")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+    verb.add_option("--log", log, "The recording in place of the file's");
+    verb.add_option("--speed", speed, "Times real time");
+    verb.add_option("--fault", faults, "One more fault, e.g. axis=1,kind=scale,value=0.8,start=8,end=18 (repeatable)")
+        ->allow_extra_args(false);
+}
+
+std::vector<std::string> SystemOptions::assignments() const
+{
+    auto result = set;
+    if (!log.empty()) result.push_back(fmt::format("source.file={}", log));
+    if (speed) result.push_back(fmt::format("source.speed={}", *speed));
+    for (const auto& fault : faults) result.push_back(fmt::format("source.faults+='{}'", fault));
+    return result;
+}
+
+system::System SystemOptions::load() const
+{
+    system::Overrides overrides{.dds = {}, .domain = domain, .set = assignments()};
+    if (!dds.empty()) {
+        const auto vendor = bus::vendor_from(dds);
+        if (!vendor) {
+            fmt::print(stderr, "--dds: {}\n", vendor.error());
+            throw CLI::RuntimeError(2);
+        }
+        overrides.dds = *vendor;
+    }
+    auto loaded = system::load(file, overrides);
+    if (!loaded) {
+        fmt::print(stderr, "{}\n", loaded.error());
+        throw CLI::RuntimeError(2);
+    }
+    return std::move(*loaded);
+}
+
+}  // namespace quorient::cli

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "quorient/system/system.hpp"
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+namespace quorient::cli {
+
+/// `--dds`, `--domain`, `--interface`, `--unit`: how a live verb joins the bus.
+struct BusOptions {
+    std::string dds = "cyclonedds";
+    std::uint32_t domain = 42;
+    std::string interface = "lo";
+    std::uint32_t unit = 1;
+
+    void add_to(CLI::App& verb);
+
+    /// @throws CLI::RuntimeError(2) after explaining a bad vendor, domain or interface on stderr.
+    std::unique_ptr<bus::Bus> open(const std::string& participant) const;
+};
+
+/// SYSTEM.yaml with `--dds`, `--domain`, `--set`, `--log`, `--speed`, `--fault`: a system file as a verb reads it.
+struct SystemOptions {
+    std::string file;
+    std::string dds;
+    std::optional<std::uint32_t> domain;
+    std::vector<std::string> set;
+    std::string log;
+    std::optional<double> speed;
+    std::vector<std::string> faults;
+
+    void add_to(CLI::App& verb);
+
+    /// All of it as values of the file.
+    std::vector<std::string> assignments() const;
+
+    /// @throws CLI::RuntimeError(2) after explaining every problem on stderr.
+    system::System load() const;
+};
+
+}  // namespace quorient::cli

@@ -1,0 +1,16 @@
+#include "verbs.hpp"
+
+namespace quorient::cli {
+
+void add_verbs(CLI::App& program)
+{
+    add_launch(program);
+    add_echo(program);
+    add_status(program);
+    add_inject(program);
+    add_readmit(program);
+    add_health(program);
+    add_record(program);
+}
+
+}  // namespace quorient::cli

@@ -1,0 +1,141 @@
+#include "quorient/recording/reader.hpp"
+#include "quorient/recording/rest_statistics.hpp"
+#include "quorient/runtime/text.hpp"
+#include "sources.hpp"
+
+#include <fmt/format.h>
+#include <cmath>
+
+namespace quorient::sensor {
+
+namespace {
+
+class LogSource final : public FrameSource {
+public:
+    LogSource(std::unique_ptr<recording::Reader> reader, const geometry::SensorCluster& cluster, const ClusterDescription& description,
+              const system::SensorSettings& settings)
+        : reader_(std::move(reader)),
+          description_(description),
+          faults_(cluster, settings.source.scenario.seed),
+          from_s_(settings.source.log->from_s),
+          to_s_(settings.source.log->to_s.value_or(std::numeric_limits<double>::infinity()))
+    {
+    }
+
+    const ClusterDescription& description() const override { return description_; }
+    simulation::FaultInjector& faults() override { return faults_; }
+    std::string remarks() const override { return recording::summary(reader_->statistics()); }
+
+    Advance advance_to(std::uint64_t sequence, SensorFrame& frame, TruthState& truth) override
+    {
+        while (next_sequence_ <= sequence) {
+            if (!read()) return Advance::end;
+        }
+        if (next_sequence_ != sequence + 1) return Advance::nothing;
+        frame = frame_;
+        truth = truth_;
+        return Advance::frame;
+    }
+
+private:
+    /// Makes frame_ of the next record between from_s and to_s; false at the end.
+    bool read()
+    {
+        for (;;) {
+            const auto outcome = reader_->next(record_);
+            if (outcome == recording::ReadOutcome::end) return false;
+            if (outcome == recording::ReadOutcome::rejected) continue;
+            const double time_s = static_cast<double>(record_.time_ns) * 1e-9;
+            if (time_s >= to_s_) return false;
+            if (time_s >= from_s_) break;
+            started_ = false;
+        }
+        if (started_ && record_.lost_before > 0) {
+            accumulator_.skip(static_cast<std::uint32_t>(record_.lost_before));
+            next_sequence_ += record_.lost_before;
+        }
+        started_ = true;
+        convert();
+        ++next_sequence_;
+        return true;
+    }
+
+    void convert()
+    {
+        frame_.epoch = truth_.epoch = description_.epoch;
+        frame_.sequence = truth_.sequence = next_sequence_;
+        frame_.sample_time_ns = truth_.sample_time_ns = record_.time_ns;
+        frame_.interval_s = record_.interval_s;
+        frame_.unit = truth_.unit = description_.unit;
+        frame_.kind = description_.kind;
+        frame_.axis_count = description_.axis_count;
+        frame_.description_revision = description_.revision;
+        frame_.valid_mask = record_.valid_mask;
+        for (std::size_t axis = 0; axis < description_.axis_count; ++axis)
+            frame_.increment[axis] = record_.increment[axis] - description_.bias[axis] * record_.interval_s;
+        truth_.attitude_known = record_.truth.has_value();
+        if (record_.truth) truth_.attitude = *record_.truth;
+        const double begin_s = static_cast<double>(record_.time_ns) * 1e-9 - record_.interval_s;
+        truth_.faulty_mask = faults_.apply(frame_, begin_s);
+        accumulator_.add(frame_);
+    }
+
+    std::unique_ptr<recording::Reader> reader_;
+    ClusterDescription description_;
+    simulation::FaultInjector faults_;
+    simulation::FrameAccumulator accumulator_;
+    double from_s_;
+    double to_s_;
+    recording::RecordedFrame record_;
+    SensorFrame frame_;
+    TruthState truth_;
+    std::uint64_t next_sequence_ = 0;
+    bool started_ = false;
+};
+
+/// Nominal geometry of the log, with the biases and sigmas of its beginning.
+tl::expected<ClusterDescription, std::string> describe_log(recording::Reader& reader, const system::SensorSettings& settings,
+                                                           std::uint64_t epoch)
+{
+    auto description = reader.description();
+    const auto rest = recording::rest_statistics(reader, settings.source.log->rest_s);
+    if (!rest) return tl::make_unexpected(rest.error());
+    description.bias = rest->bias_rad_s;
+    description.sigma = rest->sigma_rad;
+    description.epoch = epoch;
+    description.revision = 1;
+    description.unit = settings.process.node.unit;
+    description.initial_attitude_known = settings.initial_attitude.has_value();
+    if (settings.initial_attitude) description.initial_attitude = *settings.initial_attitude;
+    runtime::copy_text(settings.unit_name, description.name);
+    return description;
+}
+
+}  // namespace
+
+tl::expected<std::unique_ptr<FrameSource>, std::string> make_log_source(const system::SensorSettings& settings, std::uint64_t epoch)
+{
+    const auto& file = settings.source.log->file;
+    auto beginning = recording::open_log(file);
+    if (!beginning) return tl::make_unexpected(beginning.error());
+    const auto description = describe_log(**beginning, settings, epoch);
+    if (!description) return tl::make_unexpected(description.error());
+    const auto cluster = geometry::make_cluster(*description);
+    if (!cluster) return tl::make_unexpected(fmt::format("{}: {}", file, cluster.error()));
+
+    auto reader = recording::open_log(file);
+    if (!reader) return tl::make_unexpected(reader.error());
+    auto source = std::make_unique<LogSource>(std::move(*reader), *cluster, *description, settings);
+    for (const auto& fault : settings.source.scenario.faults) {
+        if (const auto added = source->faults().add(fault); !added) return tl::make_unexpected(added.error());
+    }
+    return source;
+}
+
+tl::expected<std::unique_ptr<FrameSource>, std::string> make_source(const system::SensorSettings& settings, std::uint64_t epoch)
+{
+    if (settings.source.log) return make_log_source(settings, epoch);
+    return make_simulation_source(settings, epoch);
+}
+
+}  // namespace quorient::sensor

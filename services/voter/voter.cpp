@@ -1,0 +1,88 @@
+#include "voter.hpp"
+
+#include "quorient/runtime/text.hpp"
+
+namespace quorient::voter {
+
+namespace {
+
+constexpr std::int64_t readiness_period_ns = 20'000'000;
+
+/// The strongest voter of the list owns `voted`.
+bus::WriterOptions ownership(const voting::VoterSettings& settings)
+{
+    return {.strength = static_cast<std::int32_t>(settings.voters.size() + 1 - settings.voter), .lease_s = settings.lease_s};
+}
+
+}  // namespace
+
+VoterService::VoterService(const system::VoterProcess& settings, bus::Bus& bus, runtime::EventLoop& loop)
+    : settings_(settings),
+      node_(settings.process.node, bus, loop),
+      outputs_(bus.advertise(bus::topics::voter_output)),
+      voted_(bus.advertise(bus::topics::voted, ownership(settings.voting))),
+      poll_timer_(loop.timer([this] {
+          brain_.poll(node_.clock().steady_ns());
+          drain();
+      })),
+      brain_(settings.voting)
+{
+    const auto now = [this] { return arrival_ns_ = node_.clock().steady_ns(); };
+    node_.main_output([this] { return outputs_.status(); });
+    loop.on(bus.subscribe(bus::topics::voter_output), [this, now](const VotedAttitude& output) {
+        brain_.on_other_voter(output, now());
+        drain();
+    });
+    loop.on(bus.subscribe(bus::topics::verdict), [this, now](const FaultVerdict& verdict) {
+        brain_.on_verdict(verdict, now());
+        drain();
+    });
+    attitudes_ = &loop.on(bus.subscribe(bus::topics::attitude), [this, now](const AttitudeState& attitude) {
+        brain_.on_attitude(attitude, now());
+        drain();
+        node_.handled(identity_of(attitude), arrival_ns_);
+    });
+    node_.watch(
+        bus::topics::attitude.spec.name, [this] { return attitudes_->status(); }, true);
+    node_.watch(
+        bus::topics::voted.spec.name, [this] { return voted_.status(); }, false);
+    // `voted` lives by assertion: a voter that hangs loses it within one lease.
+    loop.every(static_cast<std::int64_t>(settings.voting.lease_s / 4 * 1e9), [this] { voted_.assert_liveliness(); });
+    loop.every(readiness_period_ns, [this] { look_at_readiness(); });
+    drain();
+}
+
+void VoterService::look_at_readiness()
+{
+    if (node_.state() == ServiceState::starting && attitudes_->status().matched >= settings_.voting.lanes.size())
+        node_.set_state(ServiceState::ready);
+}
+
+void VoterService::drain()
+{
+    while (brain_.next_output(output_)) {
+        output_.attitude.stamp_ns[static_cast<std::size_t>(Hop::voter_in)] = node_.settings().stamps ? arrival_ns_ : 0;
+        output_.attitude.stamp_ns[static_cast<std::size_t>(Hop::voter_out)] = node_.stamp();
+        outputs_.publish(output_.attitude);
+        if (output_.to_owned) voted_.publish(output_.attitude);
+        ++node_.status().published;
+        node_.set_state(ServiceState::running);
+    }
+    voting::VoterEvent event;
+    while (brain_.next_event(event)) node_.report(event.code, event.severity, event.identity, event.axes, runtime::text_of(event.text));
+    copy_counters();
+    poll_timer_.set(brain_.next_deadline_ns());
+}
+
+void VoterService::copy_counters()
+{
+    const auto& counters = brain_.counters();
+    auto& status = node_.status();
+    status.gaps = counters.gaps;
+    status.duplicates = counters.duplicates;
+    status.late = counters.late;
+    status.foreign = counters.foreign;
+    status.rejected = counters.rejected;
+}
+
+}  // namespace quorient::voter

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "quorient/runtime/node.hpp"
+#include "quorient/system/system.hpp"
+#include "quorient/voting/voter.hpp"
+
+namespace quorient::voter {
+
+/// One attitude out of many lanes. Promises: README.md.
+class VoterService {
+public:
+    VoterService(const system::VoterProcess& settings, bus::Bus& bus, runtime::EventLoop& loop);
+
+private:
+    void drain();
+    void look_at_readiness();
+    void copy_counters();
+
+    system::VoterProcess settings_;
+    runtime::Node node_;
+    bus::Publisher<VotedAttitude> outputs_;
+    bus::Publisher<VotedAttitude> voted_;
+    bus::Subscription<AttitudeState>* attitudes_ = nullptr;
+    runtime::Timer& poll_timer_;
+    voting::Voter brain_;
+    voting::Output output_;
+    std::int64_t arrival_ns_ = 0;
+};
+
+}  // namespace quorient::voter
