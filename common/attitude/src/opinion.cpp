@@ -1,0 +1,79 @@
+#include "opinion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace quorient::attitude {
+namespace {
+
+AxisMask mask_of(const std::array<std::uint64_t, max_axes>& excluded_from)
+{
+    AxisMask mask = 0;
+    for (std::size_t axis = 0; axis < max_axes; ++axis)
+        if (excluded_from[axis] != never) mask |= axis_bit(axis);
+    return mask;
+}
+
+}  // namespace
+
+bool Opinion::precedes(const Opinion& other) const
+{
+    const auto key = [](const Opinion& o) { return std::tie(o.excluded_from, o.state, o.suspects, o.candidates, o.residual); };
+    return key(*this) < key(other);
+}
+
+Opinion opinion_of(const FaultVerdict& verdict)
+{
+    Opinion opinion;
+    opinion.sequence = verdict.sequence;
+    opinion.excluded_from = verdict.excluded_from;
+    opinion.excluded = mask_of(verdict.excluded_from);
+    opinion.suspects = verdict.suspect_mask;
+    const std::size_t count = std::min<std::size_t>(verdict.candidate_count, max_candidates);
+    for (std::size_t i = 0; i < count; ++i) opinion.candidates |= verdict.candidate_set[i];
+    for (const double residual : verdict.residual)
+        if (std::isfinite(residual)) opinion.residual = std::max(opinion.residual, std::abs(residual));
+    if (verdict.state <= static_cast<std::uint8_t>(VerdictState::blind)) opinion.state = static_cast<VerdictState>(verdict.state);
+    return opinion;
+}
+
+Opinion opinion_of(const VotedAttitude& voted)
+{
+    Opinion opinion;
+    opinion.sequence = voted.sequence;
+    for (std::size_t axis = 0; axis < max_axes; ++axis)
+        if (has_axis(voted.isolated_mask, axis)) opinion.excluded_from[axis] = std::min(voted.excluded_from[axis], voted.sequence);
+    opinion.excluded = mask_of(opinion.excluded_from);
+    opinion.state = VerdictState::isolated;
+    return opinion;
+}
+
+Judgement judge(const Opinion& opinion, AxisMask excluded, AxisMask valid, bool leave_out_suspects, const BodyIncrement& body)
+{
+    const AxisMask trusted = valid & ~excluded;
+    Judgement judgement{.used = trusted};
+    const bool overruled = (excluded & ~opinion.excluded) != 0;
+    const auto leave_out = [&](AxisMask axes) {
+        if (axes == 0 || !body.well_conditioned(trusted & ~axes)) return false;
+        judgement.used = trusted & ~axes;
+        return true;
+    };
+    const auto doubt = [&] { judgement.doubt_rad = std::max(opinion.residual, 3 * std::sqrt(body.solve(trusted).variance)); };
+
+    if (!overruled && opinion.state == VerdictState::suspect) {
+        if (!leave_out_suspects || !leave_out(opinion.suspects)) doubt();
+    } else if (!overruled && opinion.state == VerdictState::ambiguous) {
+        if (!leave_out(opinion.candidates)) {
+            judgement.mode = AttitudeMode::ambiguous;
+            doubt();
+        }
+    } else if (!overruled && opinion.state == VerdictState::blind) {
+        judgement.mode = AttitudeMode::untrusted;
+        doubt();
+    }
+    if (!body.solve(judgement.used).independent) judgement = {.used = 0, .mode = AttitudeMode::coasting};
+    return judgement;
+}
+
+}  // namespace quorient::attitude

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "polynomial_fit.hpp"
+
+#include <span>
+
+namespace quorient::attitude {
+
+/// The body rate inside one sample at its Gauss nodes: half of it, times the sample's interval [rad].
+struct HalfRate {
+    std::array<NodeRow, 3> component{};
+
+    /// Largest norm over the nodes, squared.
+    double largest_squared() const;
+};
+
+/// The fitted rate of `samples` (as many as the fit was made for).
+HalfRate half_rate(const RateFit& fit, std::span<const Sample> samples);
+
+/// Largest half rate for which picard() is converged to rounding: beyond 8 rad in one sample nothing is resolved anyway.
+inline constexpr double largest_half_rate = 4;
+
+/// The rotation over the sample: the solution of q' = 1/2 q o omega, q(0) = 1, by Picard's iteration q <- 1 + 1/2 integral of
+/// q o omega (methods.md 003, "Functional iteration") on polynomials through the Gauss nodes, iterated until the a-priori
+/// bound U^i / i! of what is left is below rounding.
+Quaternion picard(const HalfRate& rate);
+
+}  // namespace quorient::attitude
