@@ -38,7 +38,7 @@ tl::expected<std::unique_ptr<Invariants>, std::string> Invariants::make(const De
     if (settings.tolerance)
         return std::unique_ptr<Invariants>(new Invariants(settings, cluster, geometry::AxisVector::Ones(cluster.axes.rows())));
     const auto sigma = sigma_of_axes(settings, cluster);
-    if (!sigma) return tl::unexpected(sigma.error());
+    if (!sigma) return tl::unexpected(sigma.error() + "; or set tolerance");
     return std::unique_ptr<Invariants>(new Invariants(settings, cluster, *sigma));
 }
 

@@ -40,8 +40,11 @@ struct Factory {
 };
 
 constexpr Factory factories[] = {
-    {"guaranteed", made<Guaranteed>}, {"invariants", made<Invariants>}, {"voting", made<Voting>},           {"mean", made<Mean>},
-    {"glt", made<LikelihoodRatio>},   {"parity-set", made<ParitySet>},  {"subset", made<SubsetLikelihood>},
+    {"guaranteed", made<Guaranteed>},   {"invariants", made<Invariants>},
+    {"voting", made<Voting>},           {"mean", made<Mean>},
+    {"glt", made<LikelihoodRatio>},     {"parity-set", made<ParitySet>},
+    {"subset", made<SubsetLikelihood>}, {"extrapolation", made<ExtrapolationDetector>},
+    {"vector", made<VectorPredictor>},
 };
 
 }  // namespace

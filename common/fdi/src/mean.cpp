@@ -13,7 +13,7 @@ tl::expected<std::unique_ptr<Mean>, std::string> Mean::make(const DetectorSettin
     if (const auto enough = require_axes(cluster, 5, "mean"); !enough) return tl::unexpected(enough.error());
     if (settings.tolerance) return std::unique_ptr<Mean>(new Mean(settings, cluster, geometry::AxisVector::Ones(cluster.axes.rows())));
     const auto sigma = sigma_of_axes(settings, cluster);
-    if (!sigma) return tl::unexpected(sigma.error());
+    if (!sigma) return tl::unexpected(sigma.error() + "; or set tolerance");
     return std::unique_ptr<Mean>(new Mean(settings, cluster, *sigma));
 }
 

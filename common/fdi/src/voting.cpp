@@ -41,7 +41,7 @@ tl::expected<std::unique_ptr<Voting>, std::string> Voting::make(const DetectorSe
     if (const auto enough = require_axes(cluster, 6, "voting"); !enough) return tl::unexpected(enough.error());
     if (settings.tolerance) return std::unique_ptr<Voting>(new Voting(settings, cluster, geometry::AxisVector::Ones(cluster.axes.rows())));
     const auto sigma = sigma_of_axes(settings, cluster);
-    if (!sigma) return tl::unexpected(sigma.error());
+    if (!sigma) return tl::unexpected(sigma.error() + "; or set tolerance");
     return std::unique_ptr<Voting>(new Voting(settings, cluster, *sigma));
 }
 
