@@ -20,13 +20,8 @@ Problem problem_with(const Axes& axes)
 {
     const auto n = static_cast<std::size_t>(axes.rows());
     if (n < 3) return fmt::format("{} axes given; at least 3 are needed to measure a rotation", n);
-    for (Eigen::Index axis = 0; axis < axes.rows(); ++axis) {
-        const auto row = axes.row(axis);
-        if (!row.allFinite()) return fmt::format("axis {} is not finite: ({}, {}, {})", axis, row(0), row(1), row(2));
-        if (const double norm = row.norm(); std::abs(norm - 1) > norm_tolerance)
-            return fmt::format("axis {} has norm {:.9g}; unit vectors (within {:g}) are needed, divide the row by its norm", axis, norm,
-                               norm_tolerance);
-    }
+    for (Eigen::Index axis = 0; axis < axes.rows(); ++axis)
+        if (const auto problem = unit_norm_problem(axes.row(axis))) return fmt::format("axis {}: {}", axis, *problem);
     if (const int rank = rank_of(axes); rank < 3)
         return fmt::format("the {} axes all lie {}; at least one must point out of it", n, rank == 2 ? "in one plane" : "on one line");
     return std::nullopt;
@@ -82,6 +77,14 @@ AxisVector first(const std::array<double, max_axes>& values, std::size_t count)
 }
 
 }  // namespace
+
+std::optional<std::string> unit_norm_problem(const Eigen::RowVector3d& axis)
+{
+    if (!axis.allFinite()) return fmt::format("({}, {}, {}) is not finite", axis(0), axis(1), axis(2));
+    const double norm = axis.norm();
+    if (std::abs(norm - 1) <= norm_tolerance) return std::nullopt;
+    return fmt::format("norm {:.9g}; unit vectors (within {:g}) are needed, divide by the norm", norm, norm_tolerance);
+}
 
 AxisMask SensorCluster::axes_of(std::size_t instrument_index) const
 {

@@ -5,6 +5,7 @@
 #include "quorient/messages/limits.hpp"
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -37,6 +38,9 @@ struct SensorCluster {
     AxisMask all() const { return all_axes(size()); }
     AxisMask axes_of(std::size_t instrument_index) const;
 };
+
+/// What is wrong with one axis: not finite, or a norm off by more than 1e-4. Nothing where it is good.
+std::optional<std::string> unit_norm_problem(const Eigen::RowVector3d& axis);
 
 /// A cluster of axes alone: no noise, every axis its own instrument unless `instrument` says otherwise.
 /// @returns what is wrong, naming the axis: norm off by more than 1e-4, rank below 3, not finite, fewer than 3 or more than 24.
