@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-struct Run {
+struct Output {
     int exit_code = 0;
     std::string out, error;
 
@@ -27,11 +27,11 @@ struct Run {
     }
 };
 
-Run run(const std::string& arguments)
+Output run(const std::string& arguments)
 {
     CLI::App program;
     add_simulate(program);
-    Run result;
+    Output result;
     testing::internal::CaptureStdout();
     testing::internal::CaptureStderr();
     try {
@@ -56,7 +56,7 @@ std::vector<double> numbers(const std::string& line)
 
 TEST(SimulateVerb, writes_one_row_per_interval_with_the_truth_at_its_end)
 {
-    const Run result = run("coning --layout cone-4 --interval 0.1 --duration 2");
+    const Output result = run("coning --layout cone-4 --interval 0.1 --duration 2");
     EXPECT_EQ(result.exit_code, 0);
     const auto lines = result.lines();
     ASSERT_EQ(lines.size(), 21U);
@@ -76,7 +76,7 @@ TEST(SimulateVerb, writes_one_row_per_interval_with_the_truth_at_its_end)
 
 TEST(SimulateVerb, prints_the_state_at_one_time)
 {
-    const Run result = run("coning --at 10 --k2 0.084 --k3 0.05 --interval 0.1 --json");
+    const Output result = run("coning --at 10 --k2 0.084 --k3 0.05 --interval 0.1 --json");
     const json state = json::parse(result.out);
     EXPECT_NEAR(state["rate"][1].get<double>(), 0.084 * std::cos(0.5), 1e-16);
     const auto body = state["body_increment"];
@@ -116,7 +116,7 @@ TEST(SimulateVerb, carries_the_remainder_where_a_quantum_is_given)
 TEST(SimulateVerb, explains_bad_usage_with_exit_code_2)
 {
     const auto refused = [](const std::string& arguments) {
-        const Run result = run(arguments);
+        const Output result = run(arguments);
         EXPECT_NE(result.exit_code, 0) << arguments;
         EXPECT_TRUE(result.out.empty()) << arguments;
         return result.error;
