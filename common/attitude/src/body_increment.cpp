@@ -45,7 +45,8 @@ void BodyIncrement::compute(AxisMask axes, Solution& solution) const
     const Eigen::Vector3d eigenvalue = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(plain, Eigen::EigenvaluesOnly).eigenvalues();
 
     solution = Solution{.axes = axes};
-    solution.condition = eigenvalue(0) > eigenvalue(2) / largest_condition ? eigenvalue(2) / eigenvalue(0) : std::numeric_limits<double>::infinity();
+    solution.condition =
+        eigenvalue(0) > eigenvalue(2) / largest_condition ? eigenvalue(2) / eigenvalue(0) : std::numeric_limits<double>::infinity();
     solution.independent = solution.condition <= largest_condition;
     if (!solution.independent) return;
 

@@ -16,9 +16,15 @@ Vector with_previous(const Sample& previous, const Sample& sample)
     return sample.increment + h * h / (6 * before * (before + h)) * previous.increment.cross(sample.increment);
 }
 
-Vector two(const Vector& a, const Vector& b) { return a + b + 2.0 / 3 * a.cross(b); }
+Vector two(const Vector& a, const Vector& b)
+{
+    return a + b + 2.0 / 3 * a.cross(b);
+}
 
-Vector three(const Vector& a, const Vector& b, const Vector& c) { return a + b + c + (9.0 / 20 * a + 27.0 / 20 * b).cross(c); }
+Vector three(const Vector& a, const Vector& b, const Vector& c)
+{
+    return a + b + c + (9.0 / 20 * a + 27.0 / 20 * b).cross(c);
+}
 
 Vector three_miller(const Vector& a, const Vector& b, const Vector& c)
 {
@@ -37,10 +43,14 @@ Vector rotation_vector(std::span<const Sample> block, ClassicRule rule)
     assert(!block.empty() && block.size() <= 4);
     const auto th = [&](std::size_t i) -> const Vector& { return block[i].increment; };
     switch (block.size()) {
-        case 1: return th(0);
-        case 2: return two(th(0), th(1));
-        case 3: return rule == ClassicRule::three_sample_miller ? three_miller(th(0), th(1), th(2)) : three(th(0), th(1), th(2));
-        default: return four(th(0), th(1), th(2), th(3));
+        case 1:
+            return th(0);
+        case 2:
+            return two(th(0), th(1));
+        case 3:
+            return rule == ClassicRule::three_sample_miller ? three_miller(th(0), th(1), th(2)) : three(th(0), th(1), th(2));
+        default:
+            return four(th(0), th(1), th(2), th(3));
     }
 }
 
@@ -48,16 +58,23 @@ std::size_t ClassicUpdate::block() const
 {
     switch (rule_) {
         case ClassicRule::single:
-        case ClassicRule::previous: return 1;
-        case ClassicRule::two_sample: return 2;
+        case ClassicRule::previous:
+            return 1;
+        case ClassicRule::two_sample:
+            return 2;
         case ClassicRule::three_sample:
-        case ClassicRule::three_sample_miller: return 3;
-        case ClassicRule::four_sample: return 4;
+        case ClassicRule::three_sample_miller:
+            return 3;
+        case ClassicRule::four_sample:
+            return 4;
     }
     return 1;
 }
 
-std::size_t ClassicUpdate::memory() const { return rule_ == ClassicRule::single ? 1 : std::max<std::size_t>(block(), 2); }
+std::size_t ClassicUpdate::memory() const
+{
+    return rule_ == ClassicRule::single ? 1 : std::max<std::size_t>(block(), 2);
+}
 
 Step ClassicUpdate::step(std::uint64_t count, std::span<const Sample> recent) const
 {

@@ -11,7 +11,8 @@ namespace quorient::attitude {
 /// behind it waits for work(). The public standing follows the old track until the cursor has caught up.
 class Integrator::Engine {
 public:
-    Engine(const IntegratorSettings& settings, std::unique_ptr<const Update> update, const geometry::SensorCluster& cluster, std::size_t capacity);
+    Engine(const IntegratorSettings& settings, std::unique_ptr<const Update> update, const geometry::SensorCluster& cluster,
+           std::size_t capacity);
 
     void add(const SensorFrame& frame);
     void apply(const FaultVerdict& verdict);
@@ -61,9 +62,9 @@ private:
 
     History history_;
     Trust trust_;
-    Standing anchor_;    // before the oldest record
-    Opinion carried_;    // in force before the oldest record
-    Standing public_;    // at the newest record, as announced
+    Standing anchor_;  // before the oldest record
+    Opinion carried_;  // in force before the oldest record
+    Standing public_;  // at the newest record, as announced
     std::size_t cursor_ = 0;
     std::array<Sample, longest_memory> window_{};  // up to the record before window_end_
     std::size_t window_size_ = 0;
@@ -74,7 +75,7 @@ private:
     std::uint64_t next_sequence_ = 0;
     std::int64_t sample_time_ns_ = 0;
     bool bridged_ = false;
-    std::array<double, max_axes> accumulated_{};   // of the frame before next_sequence_
+    std::array<double, max_axes> accumulated_{};  // of the frame before next_sequence_
     std::array<std::uint32_t, max_axes> missed_{};
     bool accumulated_known_ = true;
 

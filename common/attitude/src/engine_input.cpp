@@ -8,7 +8,10 @@ namespace {
 // Beyond this it is no rotation of one interval, and its square would leave the range of a double.
 constexpr double largest_increment = 1e6;
 
-bool usable(double increment) { return std::abs(increment) <= largest_increment; }
+bool usable(double increment)
+{
+    return std::abs(increment) <= largest_increment;
+}
 
 Standing standing_of(const VotedAttitude& voted)
 {

@@ -13,7 +13,7 @@ namespace quorient::attitude {
 /// Where the integration stands at the end of a frame.
 struct Standing {
     Quaternion attitude = Quaternion::Identity();
-    std::uint64_t count = 0;    ///< samples since the last start of the update algorithm; 0 = none
+    std::uint64_t count = 0;  ///< samples since the last start of the update algorithm; 0 = none
     double interval_s = 0;
     double rate_rad_s = 0;      ///< norm, of the newest frame with a known rotation
     double variance = 0;        ///< of the angle error by noise, trace of the covariance [rad^2]

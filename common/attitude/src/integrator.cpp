@@ -12,13 +12,15 @@ constexpr double longest_history_frames = 250'000;
 std::string finding(const IntegratorSettings& settings, const geometry::SensorCluster& cluster)
 {
     if (cluster.kind != SensorKind::gyro) return "an attitude is integrated from gyros; this cluster is of another kind";
-    if (!(cluster.interval_s > 0)) return "the cluster's nominal interval must be above 0, got " + std::to_string(cluster.interval_s) + " s";
+    if (!(cluster.interval_s > 0))
+        return "the cluster's nominal interval must be above 0, got " + std::to_string(cluster.interval_s) + " s";
     if (!(settings.history_s > 0)) return "history_s must be above 0, got " + std::to_string(settings.history_s);
     if (!(settings.history_s / cluster.interval_s <= longest_history_frames))
         return "a history of " + std::to_string(settings.history_s) + " s at " + std::to_string(cluster.interval_s) +
                " s per frame is longer than 250000 frames; shorten history_s";
     if (!(settings.lost_after_s >= 0)) return "lost_after_s must not be negative, got " + std::to_string(settings.lost_after_s);
-    if (!(settings.initial_sigma_rad >= 0)) return "initial_sigma_rad must not be negative, got " + std::to_string(settings.initial_sigma_rad);
+    if (!(settings.initial_sigma_rad >= 0))
+        return "initial_sigma_rad must not be negative, got " + std::to_string(settings.initial_sigma_rad);
     const double norm = from_array(settings.initial_attitude).norm();
     if (!(std::abs(norm - 1) <= 1e-6)) return "initial_attitude must be a unit quaternion (w,x,y,z), its norm is " + std::to_string(norm);
     return {};
@@ -42,13 +44,34 @@ Integrator::Integrator(Integrator&&) noexcept = default;
 Integrator& Integrator::operator=(Integrator&&) noexcept = default;
 Integrator::~Integrator() = default;
 
-void Integrator::add(const SensorFrame& frame) { engine_->add(frame); }
-void Integrator::apply(const FaultVerdict& verdict) { engine_->apply(verdict); }
-bool Integrator::work() { return engine_->work(); }
-AttitudeState Integrator::state() const { return engine_->state(); }
-std::uint64_t Integrator::history_too_short() const { return engine_->history_too_short(); }
-void Integrator::seed(const VotedAttitude& voted) { engine_->seed(voted); }
-void Integrator::reset(const std::array<double, 4>& attitude) { engine_->reset(from_array(attitude).normalized()); }
+void Integrator::add(const SensorFrame& frame)
+{
+    engine_->add(frame);
+}
+void Integrator::apply(const FaultVerdict& verdict)
+{
+    engine_->apply(verdict);
+}
+bool Integrator::work()
+{
+    return engine_->work();
+}
+AttitudeState Integrator::state() const
+{
+    return engine_->state();
+}
+std::uint64_t Integrator::history_too_short() const
+{
+    return engine_->history_too_short();
+}
+void Integrator::seed(const VotedAttitude& voted)
+{
+    engine_->seed(voted);
+}
+void Integrator::reset(const std::array<double, 4>& attitude)
+{
+    engine_->reset(from_array(attitude).normalized());
+}
 void Integrator::begin_epoch(std::uint64_t epoch, const std::array<double, 4>& attitude)
 {
     engine_->begin_epoch(epoch, from_array(attitude).normalized());

@@ -17,7 +17,8 @@ tl::expected<Quaternion, std::string> level(const Eigen::Vector3d& specific_forc
     const double pitch = std::atan2(-specific_force.x(), std::hypot(specific_force.y(), specific_force.z()));
     using Eigen::AngleAxisd;
     using Eigen::Vector3d;
-    return Quaternion(AngleAxisd(heading_rad, Vector3d::UnitZ()) * AngleAxisd(pitch, Vector3d::UnitY()) * AngleAxisd(roll, Vector3d::UnitX()));
+    return Quaternion(AngleAxisd(heading_rad, Vector3d::UnitZ()) * AngleAxisd(pitch, Vector3d::UnitY()) *
+                      AngleAxisd(roll, Vector3d::UnitX()));
 }
 
 }  // namespace quorient::attitude

@@ -14,17 +14,14 @@ namespace quorient::attitude {
 struct Opinion {
     std::uint64_t sequence = 0;
     std::array<std::uint64_t, max_axes> excluded_from = detail::all_never();
-    AxisMask excluded = 0;    ///< axes with an excluded_from
+    AxisMask excluded = 0;  ///< axes with an excluded_from
     AxisMask suspects = 0;
     AxisMask candidates = 0;  ///< union of the candidate sets
     double residual = 0;      ///< largest of the finite residuals [rad]
     VerdictState state = VerdictState::unknown;
 
     /// Whether an axis that it does not exclude is trusted again. WARMING_UP, AMBIGUOUS and BLIND never clear an exclusion.
-    bool clears() const
-    {
-        return state == VerdictState::healthy || state == VerdictState::suspect || state == VerdictState::isolated;
-    }
+    bool clears() const { return state == VerdictState::healthy || state == VerdictState::suspect || state == VerdictState::isolated; }
 
     /// An order without meaning, so that of two different opinions on one frame the same one is kept whichever comes first.
     bool precedes(const Opinion& other) const;

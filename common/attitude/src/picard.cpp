@@ -36,8 +36,7 @@ double HalfRate::largest_squared() const
 {
     double largest = 0;
     for (std::size_t k = 0; k < node_count; ++k) {
-        const double squared =
-            component[0][k] * component[0][k] + component[1][k] * component[1][k] + component[2][k] * component[2][k];
+        const double squared = component[0][k] * component[0][k] + component[1][k] * component[1][k] + component[2][k] * component[2][k];
         largest = squared <= largest ? largest : squared;  // also keeps a NaN
     }
     return largest;

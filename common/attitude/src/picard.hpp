@@ -17,8 +17,8 @@ struct HalfRate {
 /// The fitted rate of `samples` (as many as the fit was made for).
 HalfRate half_rate(const RateFit& fit, std::span<const Sample> samples);
 
-/// Largest half rate for which picard() is converged to rounding: beyond 8 rad in one sample nothing is resolved anyway.
-inline constexpr double largest_half_rate = 4;
+/// Largest half rate for which picard() is worth its price: beyond 4 rad in one sample the motion is not resolved anyway.
+inline constexpr double largest_half_rate = 2;
 
 /// The rotation over the sample: the solution of q' = 1/2 q o omega, q(0) = 1, by Picard's iteration q <- 1 + 1/2 integral of
 /// q o omega (methods.md 003, "Functional iteration") on polynomials through the Gauss nodes, iterated until the a-priori

@@ -97,7 +97,8 @@ const GaussRule& gauss_rule()
         for (std::size_t k = 0; k < node_count; ++k) {
             rounded.node[k] = static_cast<double>(wide_rule().node[k]);
             rounded.weight[k] = static_cast<double>(wide_rule().weight[k]);
-            for (std::size_t l = 0; l < node_count; ++l) rounded.integral[l][k] = static_cast<double>(wide_rule().integral(l, wide_rule().node[k]));
+            for (std::size_t l = 0; l < node_count; ++l)
+                rounded.integral[l][k] = static_cast<double>(wide_rule().integral(l, wide_rule().node[k]));
         }
         return rounded;
     }();

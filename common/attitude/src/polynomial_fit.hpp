@@ -8,8 +8,9 @@
 
 namespace quorient::attitude {
 
-/// Gauss-Legendre nodes on one interval: the rotation over it is exact to order 12 in the interval.
-inline constexpr std::size_t node_count = 6;
+/// Gauss-Legendre nodes on one interval: collocation at K of them leaves about x^(2K+1) (K!)^2 / ((2K)! (2K+1)!) of a rotation
+/// by x, i.e. 3e-14 at 2 rad in one sample with 8 (1e-9 with 6).
+inline constexpr std::size_t node_count = 8;
 
 using NodeRow = std::array<double, node_count>;
 

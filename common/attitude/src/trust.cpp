@@ -87,14 +87,16 @@ void Trust::hear_early(std::uint64_t epoch, const Opinion& opinion)
     if (epoch != early_epoch_) early_count_ = 0;
     early_epoch_ = epoch;
     const auto end = early_.begin() + static_cast<std::ptrdiff_t>(early_count_);
-    const auto place = std::lower_bound(early_.begin(), end, opinion.sequence, [](const Opinion& o, std::uint64_t s) { return o.sequence < s; });
+    const auto place =
+        std::lower_bound(early_.begin(), end, opinion.sequence, [](const Opinion& o, std::uint64_t s) { return o.sequence < s; });
     if (place != end && place->sequence == opinion.sequence) {
         if (opinion.precedes(*place)) *place = opinion;
         return;
     }
     if (place == early_.end()) return;
     if (early_count_ < early_capacity) ++early_count_;
-    std::move_backward(place, early_.begin() + static_cast<std::ptrdiff_t>(early_count_) - 1, early_.begin() + static_cast<std::ptrdiff_t>(early_count_));
+    std::move_backward(place, early_.begin() + static_cast<std::ptrdiff_t>(early_count_) - 1,
+                       early_.begin() + static_cast<std::ptrdiff_t>(early_count_));
     *place = opinion;
 }
 
@@ -108,7 +110,8 @@ bool Trust::take_early(std::uint64_t first_sequence, std::uint64_t last_sequence
         opinion = early_[passed];
         found = true;
     }
-    std::move(early_.begin() + static_cast<std::ptrdiff_t>(passed), early_.begin() + static_cast<std::ptrdiff_t>(early_count_), early_.begin());
+    std::move(early_.begin() + static_cast<std::ptrdiff_t>(passed), early_.begin() + static_cast<std::ptrdiff_t>(early_count_),
+              early_.begin());
     early_count_ -= passed;
     return found;
 }

@@ -8,14 +8,15 @@
 namespace quorient::attitude {
 namespace {
 
-constexpr double equal_within = 1e-9;            // relative; what this leaves is below 1e-9 of the coning correction
+constexpr double equal_within = 1e-9;  // relative; what this leaves is below 1e-9 of the coning correction
 constexpr double largest_noise_growth = 100;
 constexpr std::size_t order_when_unresolved = 3;
 
 bool all_equal(std::span<const Sample> samples)
 {
     const double reference = samples.back().interval_s;
-    return std::ranges::all_of(samples, [reference](const Sample& s) { return std::abs(s.interval_s - reference) <= equal_within * reference; });
+    return std::ranges::all_of(samples,
+                               [reference](const Sample& s) { return std::abs(s.interval_s - reference) <= equal_within * reference; });
 }
 
 // Whether differences of the rate shrink with their order, as they do for what the samples resolve. A sinusoid of frequency f
@@ -27,7 +28,8 @@ bool resolved(std::span<const Sample> samples)
     double second = 0;
     Eigen::Vector3d before = Eigen::Vector3d::Zero();
     for (std::size_t i = 1; i < samples.size(); ++i) {
-        const Eigen::Vector3d difference = samples[i].increment / samples[i].interval_s - samples[i - 1].increment / samples[i - 1].interval_s;
+        const Eigen::Vector3d difference =
+            samples[i].increment / samples[i].interval_s - samples[i - 1].increment / samples[i - 1].interval_s;
         first += difference.squaredNorm();
         if (i > 1) second += (difference - before).squaredNorm();
         before = difference;
@@ -38,7 +40,10 @@ bool resolved(std::span<const Sample> samples)
 
 }  // namespace
 
-bool same_start(double earlier_interval_s, double interval_s) { return earlier_interval_s <= 4 * interval_s; }
+bool same_start(double earlier_interval_s, double interval_s)
+{
+    return earlier_interval_s <= 4 * interval_s;
+}
 
 Stretch::Stretch(std::span<const Sample> samples)
     : samples_(samples), equal_(all_equal(samples)), order_(resolved(samples) ? samples.size() : order_when_unresolved)

@@ -60,14 +60,16 @@ public:
         const Wide b = std::sin(half) * k2_ / norm;
         const Wide c = std::cos(k3_ * time_s / 2);
         const Wide s = -std::sin(k3_ * time_s / 2);
-        return {static_cast<double>(w * c - a * s), static_cast<double>(w * s + a * c), static_cast<double>(b * c), static_cast<double>(-b * s)};
+        return {static_cast<double>(w * c - a * s), static_cast<double>(w * s + a * c), static_cast<double>(b * c),
+                static_cast<double>(-b * s)};
     }
 
     Eigen::Vector3d increment(Wide begin_s, Wide interval_s) const
     {
         const Wide middle = k3_ * (begin_s + interval_s / 2);
         const Wide chord = 2 * k2_ / k3_ * std::sin(k3_ * interval_s / 2);
-        return {static_cast<double>(k3_ * interval_s), static_cast<double>(chord * std::cos(middle)), static_cast<double>(-chord * std::sin(middle))};
+        return {static_cast<double>(k3_ * interval_s), static_cast<double>(chord * std::cos(middle)),
+                static_cast<double>(-chord * std::sin(middle))};
     }
 
 private:
@@ -86,6 +88,9 @@ double error_after(std::string_view algorithm, const Motion& motion, double inte
     return angle_between(propagator.attitude(), motion.attitude(static_cast<Wide>(rows) * interval_s));
 }
 
-inline double deg_per_hour(double error_rad, double duration_s) { return error_rad * 180 / std::numbers::pi * 3600 / duration_s; }
+inline double deg_per_hour(double error_rad, double duration_s)
+{
+    return error_rad * 180 / std::numbers::pi * 3600 / duration_s;
+}
 
 }  // namespace quorient::attitude::testing

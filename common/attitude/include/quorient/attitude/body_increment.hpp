@@ -20,10 +20,10 @@ public:
 
     struct Solution {
         AxisMask axes = 0;
-        bool independent = false;  ///< three axes that span space (eigenvalue ratio up to 1e6); else gain is 0
-        double condition = 0;      ///< largest / smallest eigenvalue of H'H over these axes; infinite where rank < 3
-        Gain gain = Gain::Zero();  ///< G, 0 in the columns of other axes
-        double variance = 0;       ///< trace of the noise covariance of theta at the nominal interval [rad^2]
+        bool independent = false;     ///< three axes that span space (eigenvalue ratio up to 1e6); else gain is 0
+        double condition = 0;         ///< largest / smallest eigenvalue of H'H over these axes; infinite where rank < 3
+        Gain gain = Gain::Zero();     ///< G, 0 in the columns of other axes
+        double variance = 0;          ///< trace of the noise covariance of theta at the nominal interval [rad^2]
         double quantum_variance = 0;  ///< the same of a carried quantiser's remainder, which does not grow [rad^2]
     };
 

@@ -15,14 +15,14 @@
 namespace quorient::attitude {
 
 struct IntegratorSettings {
-    std::string algorithm = "window-10";  ///< as in `quorient propagate`, see update.hpp
-    double history_s = 10;                ///< how far back a verdict can still be honoured
-    bool rollback = true;                 ///< false: a verdict acts from the next frame on (for comparison)
+    std::string algorithm = "window-10";                 ///< as in `quorient propagate`, see update.hpp
+    double history_s = 10;                               ///< how far back a verdict can still be honoured
+    bool rollback = true;                                ///< false: a verdict acts from the next frame on (for comparison)
     std::array<double, 4> initial_attitude{1, 0, 0, 0};  ///< q_RB at the start of sequence 0 (w,x,y,z)
     double initial_sigma_rad = 0;
-    bool initialised = true;          ///< false: mode INITIALISING until seed() or reset()
-    bool leave_out_suspects = true;   ///< a named suspect is left out while it is suspected
-    double lost_after_s = 1;          ///< without three trusted axes for longer than this: LOST instead of COASTING
+    bool initialised = true;         ///< false: mode INITIALISING until seed() or reset()
+    bool leave_out_suspects = true;  ///< a named suspect is left out while it is suspected
+    double lost_after_s = 1;         ///< without three trusted axes for longer than this: LOST instead of COASTING
     std::uint32_t unit = 0;
     std::uint32_t lane = 0;
 };

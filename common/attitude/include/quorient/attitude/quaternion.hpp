@@ -10,9 +10,15 @@ namespace quorient::attitude {
 /// q_RB: body -> reference, Hamilton product, dq/dt = 1/2 q o omega_B. On the wire and in arrays (w,x,y,z).
 using Quaternion = Eigen::Quaterniond;
 
-inline Quaternion from_array(const std::array<double, 4>& wxyz) { return {wxyz[0], wxyz[1], wxyz[2], wxyz[3]}; }
+inline Quaternion from_array(const std::array<double, 4>& wxyz)
+{
+    return {wxyz[0], wxyz[1], wxyz[2], wxyz[3]};
+}
 
-inline std::array<double, 4> to_array(const Quaternion& q) { return {q.w(), q.x(), q.y(), q.z()}; }
+inline std::array<double, 4> to_array(const Quaternion& q)
+{
+    return {q.w(), q.x(), q.y(), q.z()};
+}
 
 /// The quaternion of the rotation vector phi [rad]: [cos(|phi|/2), sin(|phi|/2) phi/|phi|]. |phi| below 1e150.
 inline Quaternion from_rotation_vector(const Eigen::Vector3d& phi)
