@@ -147,7 +147,7 @@ void Voter::Brain::receive(LaneIndex lane, const AttitudeState& attitude)
         return;
     }
     if (arrival == Timeline::Arrival::ahead) {
-        ++counters_.foreign;
+        if (timeline_.started()) ++counters_.foreign;
         newcomers_.hold(lane, attitude, *now_);
         return;
     }
@@ -240,9 +240,20 @@ LaneIndex Voter::Brain::wanted_primary() const
 
 bool Voter::Brain::is_ready(std::uint64_t sequence, const Ballot& ballot) const
 {
-    if (ballot.backed && *ballot.primary == wanted_primary()) return true;
+    const bool as_wanted = ballot.backed && *ballot.primary == wanted_primary();
+    if (as_wanted && !is_better_to_come(timeline_.identity(sequence), ballot.isolated)) return true;
     if (is_complete(timeline_.identity(sequence), ballot.several_groups)) return true;
     return *now_ >= std::max(timeline_.due_ns(sequence) + patience_ns_, drained_ns_);
+}
+
+/// A lane that has not spoken of this frame yet has corrected its attitude for a fault that a majority of detectors reports.
+bool Voter::Brain::is_better_to_come(Identity identity, AxisMask isolated) const
+{
+    for (LaneIndex lane = 0; lane < board_.size(); ++lane) {
+        if (board_.lane(lane).blocked() || board_.lane(lane).is_past(identity)) continue;
+        if (corroboration_.knows_better(lane, isolated, *now_)) return true;
+    }
+    return false;
 }
 
 /// Nobody whose voice could change the outcome is still to be heard.

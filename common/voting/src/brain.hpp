@@ -48,6 +48,7 @@ private:
     void publish_what_is_ready(bool at_once);
     BallotPaper paper_of(std::uint64_t sequence) const;
     bool is_ready(std::uint64_t sequence, const Ballot& ballot) const;
+    bool is_better_to_come(Identity identity, AxisMask isolated) const;
     bool is_complete(Identity identity, bool several_groups) const;
     LaneIndex wanted_primary() const;
 

@@ -91,6 +91,12 @@ bool Corroboration::speaks(std::size_t lane, std::int64_t now_ns) const
     return fresh(voice_[lane], now_ns);
 }
 
+bool Corroboration::knows_better(std::size_t lane, AxisMask isolated, std::int64_t now_ns) const
+{
+    const AxisMask more = (voice_[lane].isolated | voice_[lane].applied) & ~isolated;
+    return more != 0 && (more & corroborated(now_ns)) != 0;
+}
+
 bool Corroboration::redundancy_exhausted(std::size_t lane, std::int64_t now_ns) const
 {
     return fresh(voice_[lane], now_ns) && voice_[lane].exhausted;

@@ -40,6 +40,9 @@ public:
     bool speaks(std::size_t lane, std::int64_t now_ns) const;
     bool has_judged(std::size_t lane, Identity identity) const { return voice_[lane].identity >= identity; }
 
+    /// The lane leaves out axes that a majority reports and that `isolated` lacks, or its detector has just told it to.
+    bool knows_better(std::size_t lane, AxisMask isolated, std::int64_t now_ns) const;
+
     /// The detector says that no further fault could be detected.
     bool redundancy_exhausted(std::size_t lane, std::int64_t now_ns) const;
 

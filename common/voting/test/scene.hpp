@@ -1,0 +1,192 @@
+#pragma once
+
+#include "quorient/messages/codes.hpp"
+#include "quorient/voting/agreement.hpp"
+#include "quorient/voting/voter.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace quorient::voting::test {
+
+inline constexpr std::int64_t ms = 1'000'000;
+inline constexpr std::int64_t interval = 5 * ms;
+inline constexpr std::uint64_t first_epoch = 1000;
+
+/// The rotation by an angle about an axis of the reference frame.
+inline Quaternion turn(double angle_rad, int axis = 2)
+{
+    Quaternion q{std::cos(angle_rad / 2), 0, 0, 0};
+    q[static_cast<std::size_t>(axis) + 1] = std::sin(angle_rad / 2);
+    return q;
+}
+
+/// What the vehicle really does: 0.7 rad/s about body x after a tilt.
+inline Quaternion truth(std::uint64_t sequence)
+{
+    return product(turn(0.4, 1), turn(0.7 * 0.005 * static_cast<double>(sequence + 1), 0));
+}
+
+inline VoterSettings settings_of(std::size_t lanes, std::vector<std::uint32_t> voters = {}, std::uint32_t voter = 1)
+{
+    VoterSettings settings;
+    settings.unit = 7;
+    settings.voter = voter;
+    for (std::uint32_t lane = 0; lane < lanes; ++lane)
+        settings.lanes.push_back({lane + 1, lane + 101, std::string(1, static_cast<char>('a' + lane))});
+    settings.voters = std::move(voters);
+    settings.interval_s = 0.005;
+    settings.lease_s = 0.05;
+    return settings;
+}
+
+inline AttitudeState sample_of(std::size_t lane, std::uint64_t sequence, std::uint64_t epoch = first_epoch)
+{
+    AttitudeState sample;
+    sample.epoch = epoch;
+    sample.sequence = sequence;
+    sample.sample_time_ns = static_cast<std::int64_t>(sequence + 1) * interval;
+    sample.attitude = truth(sequence);
+    sample.rate_rad_s = {0.7, 0, 0};
+    sample.angle_sigma_rad = 1e-5;
+    sample.excluded_from = detail::all_never();
+    sample.unit = 7;
+    sample.lane = static_cast<std::uint32_t>(lane) + 1;
+    sample.used_mask = 0x3f;
+    sample.mode = static_cast<std::uint8_t>(AttitudeMode::normal);
+    return sample;
+}
+
+/// The same sample, off by a rotation of the reference frame.
+inline AttitudeState moved(AttitudeState sample, double angle_rad)
+{
+    sample.attitude = product(turn(angle_rad), sample.attitude);
+    return sample;
+}
+
+inline AttitudeState isolating(AttitudeState sample, AxisMask axes)
+{
+    sample.isolated_mask = axes;
+    sample.used_mask &= ~axes;
+    return sample;
+}
+
+inline FaultVerdict verdict_of(std::size_t lane, std::uint64_t sequence, VerdictState state = VerdictState::healthy, AxisMask axes = 0)
+{
+    FaultVerdict verdict;
+    verdict.epoch = first_epoch;
+    verdict.sequence = sequence;
+    verdict.unit = 7;
+    verdict.detector = static_cast<std::uint32_t>(lane) + 101;
+    verdict.state = static_cast<std::uint8_t>(state);
+    verdict.detectable_remaining = 2;
+    if (state == VerdictState::suspect) verdict.suspect_mask = axes;
+    if (state == VerdictState::isolated) verdict.isolated_mask = axes;
+    return verdict;
+}
+
+/// A voter, a clock, and everything that came out.
+class Scene {
+public:
+    explicit Scene(std::size_t lane_count = 3) : Scene(settings_of(lane_count)) {}
+    explicit Scene(const VoterSettings& settings, std::int64_t start_ns = 0) : lanes(settings.lanes.size()), voter(settings), now(start_ns)
+    {
+        voter.poll(now);
+        collect();
+    }
+
+    /// Time passes; the voter is polled whenever it asked for it.
+    void until(std::int64_t time_ns)
+    {
+        while (voter.next_deadline_ns() <= time_ns) {
+            now = std::max(now, voter.next_deadline_ns());
+            voter.poll(now);
+            collect();
+        }
+        now = std::max(now, time_ns);
+    }
+
+    /// The process does not run in between, whatever the voter asked for.
+    void stopped_until(std::int64_t time_ns)
+    {
+        now = time_ns;
+        voter.poll(now);
+        collect();
+    }
+
+    void at(std::int64_t time_ns, const AttitudeState& sample)
+    {
+        until(time_ns);
+        voter.on_attitude(sample, now);
+        collect();
+    }
+
+    void at(std::int64_t time_ns, const FaultVerdict& verdict)
+    {
+        until(time_ns);
+        voter.on_verdict(verdict, now);
+        collect();
+    }
+
+    void at(std::int64_t time_ns, const VotedAttitude& output)
+    {
+        until(time_ns);
+        voter.on_other_voter(output, now);
+        collect();
+    }
+
+    static std::int64_t time_of(std::uint64_t sequence) { return static_cast<std::int64_t>(sequence + 1) * interval; }
+
+    /// Frames in which every lane that `change` does not leave out delivers, 0.1 ms after one another.
+    template <class Change>
+    void frames(std::uint64_t first, std::uint64_t last, Change&& change)
+    {
+        for (std::uint64_t sequence = first; sequence <= last; ++sequence) {
+            for (std::size_t lane = 0; lane < lanes; ++lane) {
+                AttitudeState sample = sample_of(lane, sequence);
+                if (change(lane, sample)) at(time_of(sequence) + static_cast<std::int64_t>(lane) * ms / 10, sample);
+            }
+        }
+    }
+
+    void frames(std::uint64_t first, std::uint64_t last)
+    {
+        frames(first, last, [](std::size_t, AttitudeState&) { return true; });
+    }
+
+    void collect()
+    {
+        Output output;
+        while (voter.next_output(output)) {
+            outputs.push_back(output);
+            published_ns.push_back(now);
+        }
+        VoterEvent event;
+        while (voter.next_event(event)) events.push_back(event);
+    }
+
+    const VotedAttitude& last() const { return outputs.back().attitude; }
+
+    std::size_t count(EventCode code) const
+    {
+        std::size_t found = 0;
+        for (const VoterEvent& event : events) found += event.code == code ? 1 : 0;
+        return found;
+    }
+
+    bool excluded(std::size_t lane) const { return (last().excluded_mask >> lane & 1U) != 0; }
+    LaneExclusion why(std::size_t lane) const { return static_cast<LaneExclusion>(last().excluded_why[lane]); }
+    double error_rad() const { return geodesic_angle(last().attitude, truth(last().sequence)); }
+
+    std::size_t lanes;
+    Voter voter;
+    std::int64_t now;
+    std::vector<Output> outputs;
+    std::vector<std::int64_t> published_ns;
+    std::vector<VoterEvent> events;
+};
+
+}  // namespace quorient::voting::test

@@ -1,0 +1,247 @@
+#include "scene.hpp"
+
+#include <gtest/gtest.h>
+#include <memory>
+
+using namespace quorient;
+using namespace quorient::voting;
+using namespace quorient::voting::test;
+
+namespace {
+
+/// Two voters that hear the same lanes and each other.
+struct Pair {
+    Pair() : strong(settings_of(3, {1, 2}, 1)), weak(settings_of(3, {1, 2}, 2)) {}
+
+    void deliver(Scene& to, const AttitudeState& sample, std::int64_t time)
+    {
+        to.at(time, sample);
+        exchange();
+    }
+
+    void exchange()
+    {
+        for (; strong_alive && strong_told < strong.outputs.size(); ++strong_told) tell(weak, weak_alive, strong.outputs[strong_told]);
+        for (; weak_alive && weak_told < weak.outputs.size(); ++weak_told) tell(strong, strong_alive, weak.outputs[weak_told]);
+    }
+
+    void tell(Scene& scene, bool alive, const Output& output) const
+    {
+        if (alive) scene.at(std::max(weak.now, strong.now), output.attitude);
+    }
+
+    template <class Change>
+    void frames(std::uint64_t first, std::uint64_t last, Change&& change)
+    {
+        for (std::uint64_t sequence = first; sequence <= last; ++sequence) {
+            for (std::size_t lane = 0; lane < 3; ++lane) {
+                const std::int64_t time = Scene::time_of(sequence) + static_cast<std::int64_t>(lane) * ms / 10;
+                AttitudeState sample = sample_of(lane, sequence);
+                if (!change(lane, sample)) continue;
+                if (strong_alive) deliver(strong, sample, time);
+                if (weak_alive) deliver(weak, sample, time + ms / 50);
+            }
+        }
+    }
+
+    void frames(std::uint64_t first, std::uint64_t last)
+    {
+        frames(first, last, [](std::size_t, AttitudeState&) { return true; });
+    }
+
+    Scene strong, weak;
+    std::size_t strong_told = 0, weak_told = 0;
+    bool strong_alive = true, weak_alive = true;
+};
+
+const VotedAttitude* output_of(const Scene& scene, std::uint64_t sequence)
+{
+    for (const Output& output : scene.outputs) {
+        if (output.attitude.sequence == sequence) return &output.attitude;
+    }
+    return nullptr;
+}
+
+auto lanes_apart = [](std::size_t lane, AttitudeState& sample) {
+    sample = moved(sample, 3e-5 * static_cast<double>(lane));
+    return true;
+};
+
+}  // namespace
+
+TEST(TwoVoters, publish_the_same_in_step)
+{
+    Pair pair;
+    pair.frames(0, 99, lanes_apart);
+    for (std::uint64_t sequence = 20; sequence < 100; ++sequence) {
+        const VotedAttitude* a = output_of(pair.strong, sequence);
+        const VotedAttitude* b = output_of(pair.weak, sequence);
+        ASSERT_TRUE(a != nullptr && b != nullptr) << sequence;
+        EXPECT_EQ(a->attitude, b->attitude);
+        EXPECT_EQ(a->output_sequence, b->output_sequence);
+        EXPECT_EQ(a->reset_counter, b->reset_counter);
+    }
+    EXPECT_TRUE(pair.strong.voter.owns());
+    EXPECT_FALSE(pair.weak.voter.owns());
+}
+
+TEST(TwoVoters, lose_no_frame_at_a_cold_start)
+{
+    Pair pair;
+    pair.frames(0, 99);
+    EXPECT_EQ(pair.strong.outputs.front().attitude.sequence, 0U);
+}
+
+TEST(TwoVoters, follow_the_stronger_ones_choice_of_primary)
+{
+    Pair pair;
+    pair.frames(0, 49, lanes_apart);
+    for (std::uint64_t sequence = 50; sequence < 100; ++sequence) {
+        for (std::size_t lane = 0; lane < 3; ++lane) {
+            const std::int64_t time = Scene::time_of(sequence) + static_cast<std::int64_t>(lane) * ms / 10;
+            AttitudeState sample = sample_of(lane, sequence);
+            lanes_apart(lane, sample);
+            if (lane != 0) pair.deliver(pair.strong, sample, time);  // only the strong one lost lane a
+            pair.deliver(pair.weak, sample, time + ms / 50);
+        }
+    }
+    EXPECT_EQ(pair.strong.last().primary_lane, 2U);
+    EXPECT_EQ(pair.weak.last().primary_lane, 2U);
+    EXPECT_EQ(pair.weak.last().reset_counter, pair.strong.last().reset_counter);
+    EXPECT_EQ(pair.weak.last().output_sequence, pair.strong.last().output_sequence);
+}
+
+TEST(TwoVoters, go_on_without_a_seam_when_the_stronger_dies)
+{
+    Pair pair;
+    pair.frames(0, 29, lanes_apart);
+    pair.frames(30, 59, [](std::size_t lane, AttitudeState& sample) { return lanes_apart(lane, sample) && lane != 0; });
+    const VotedAttitude last = pair.strong.last();
+    ASSERT_EQ(last.reset_counter, 1U) << "something to continue";
+    pair.strong_alive = false;
+    pair.frames(60, 119, [](std::size_t lane, AttitudeState& sample) { return lanes_apart(lane, sample) && lane != 0; });
+    for (std::uint64_t sequence = 60; sequence < 120; ++sequence) {
+        const VotedAttitude* output = output_of(pair.weak, sequence);
+        ASSERT_NE(output, nullptr);
+        EXPECT_EQ(output->reset_counter, last.reset_counter);
+        EXPECT_EQ(output->output_sequence, last.output_sequence + (sequence - last.sequence));
+    }
+    EXPECT_TRUE(pair.weak.voter.owns());
+    EXPECT_EQ(pair.weak.count(EventCode::ownership_taken), 1U);
+}
+
+TEST(TwoVoters, announce_the_move_when_the_heir_stands_elsewhere)
+{
+    Pair pair;
+    pair.frames(0, 49, lanes_apart);
+    for (std::uint64_t sequence = 50; sequence < 80; ++sequence) {
+        for (std::size_t lane = 0; lane < 3; ++lane) {
+            AttitudeState sample = sample_of(lane, sequence);
+            lanes_apart(lane, sample);
+            pair.deliver(pair.strong, sample, Scene::time_of(sequence));
+            if (lane != 0) pair.deliver(pair.weak, sample, Scene::time_of(sequence) + ms / 50);  // the weak one lost lane a
+        }
+    }
+    ASSERT_EQ(pair.weak.last().primary_lane, 2U);
+    const VotedAttitude last = pair.strong.last();
+    pair.strong_alive = false;
+    pair.frames(80, 99, [](std::size_t lane, AttitudeState& sample) { return lanes_apart(lane, sample) && lane != 0; });
+    const VotedAttitude* next = output_of(pair.weak, 80);
+    ASSERT_NE(next, nullptr);
+    EXPECT_EQ(next->reset_counter, last.reset_counter + 1);
+    EXPECT_NEAR(geodesic_angle(product(next->reset_rotation, truth(80)), next->attitude), 0, 1e-12);
+    EXPECT_EQ(pair.weak.last().reset_counter, last.reset_counter + 1) << "once";
+}
+
+TEST(TwoVoters, write_voted_only_after_twenty_good_frames_and_never_a_frame_already_voted)
+{
+    Pair pair;
+    pair.frames(0, 99);
+    std::size_t written = 0;
+    for (const Output& output : pair.strong.outputs) written += output.to_owned ? 1 : 0;
+    EXPECT_EQ(written, 80U);
+    EXPECT_FALSE(pair.strong.outputs[19].to_owned);
+    EXPECT_TRUE(pair.strong.outputs[20].to_owned);
+    for (const Output& output : pair.weak.outputs) EXPECT_FALSE(output.to_owned) << "the stronger one had published it";
+}
+
+TEST(TwoVoters, let_a_restarted_voter_continue_what_the_other_did)
+{
+    Pair pair;
+    pair.frames(0, 49, lanes_apart);
+    pair.strong_alive = false;
+    pair.frames(50, 99, [](std::size_t lane, AttitudeState& sample) { return lanes_apart(lane, sample) && lane != 0; });
+
+    Scene restarted(settings_of(3, {1, 2}, 1), Scene::time_of(100) - 3 * ms);
+    std::swap(pair.strong, restarted);
+    pair.strong_told = 0;
+    pair.strong_alive = true;
+    pair.frames(100, 299, [](std::size_t lane, AttitudeState& sample) { return lanes_apart(lane, sample) && lane != 0; });
+    const VotedAttitude& first = pair.strong.outputs.front().attitude;
+    const VotedAttitude* other = output_of(pair.weak, first.sequence);
+    ASSERT_NE(other, nullptr);
+    EXPECT_EQ(first.output_sequence, other->output_sequence);
+    EXPECT_EQ(first.reset_counter, other->reset_counter);
+    EXPECT_EQ(first.primary_lane, other->primary_lane);
+    EXPECT_TRUE(pair.strong.voter.owns());
+    EXPECT_FALSE(pair.weak.voter.owns());
+    EXPECT_EQ(pair.weak.last().primary_lane, pair.strong.last().primary_lane);
+}
+
+TEST(TwoVoters, never_let_a_stopped_one_take_the_output_back_in_time)
+{
+    Pair pair;
+    pair.frames(0, 99);
+    pair.strong_alive = false;  // stopped, not dead: what comes meanwhile waits for it
+    const std::size_t told = pair.weak.outputs.size();
+    pair.frames(100, 499);
+    const std::size_t before = pair.strong.outputs.size();
+    const std::int64_t wakes = Scene::time_of(499) + ms;
+    pair.strong.stopped_until(wakes);
+    for (std::uint64_t sequence = 436; sequence < 500; ++sequence) {
+        for (std::size_t lane = 0; lane < 3; ++lane) pair.strong.at(wakes, sample_of(lane, sequence));
+    }
+    for (std::size_t output = told; output < pair.weak.outputs.size(); ++output) {
+        if (output + 64 >= pair.weak.outputs.size()) pair.strong.at(wakes, pair.weak.outputs[output].attitude);
+    }
+    pair.weak_told = pair.weak.outputs.size();
+    pair.strong_alive = true;
+    pair.frames(500, 599);
+    ASSERT_GT(pair.strong.outputs.size(), before);
+    EXPECT_EQ(pair.strong.voter.counters().resynchronised, 1U);
+    for (std::size_t output = before; output < pair.strong.outputs.size(); ++output) {
+        EXPECT_GE(pair.strong.outputs[output].attitude.sequence, 500U);
+        EXPECT_GT(pair.strong.outputs[output].attitude.output_sequence, 500U);
+    }
+    EXPECT_FALSE(pair.strong.outputs[before].to_owned) << "twenty good frames first";
+    EXPECT_TRUE(pair.strong.outputs.back().to_owned);
+}
+
+TEST(TwoVoters, give_up_the_ownership_while_only_the_stronger_one_is_cut_off)
+{
+    Pair pair;
+    pair.frames(0, 99);
+    ASSERT_TRUE(pair.strong.voter.may_own());
+    for (std::uint64_t sequence = 100; sequence < 150; ++sequence) {
+        for (std::size_t lane = 0; lane < 3; ++lane) pair.deliver(pair.weak, sample_of(lane, sequence), Scene::time_of(sequence));
+        pair.strong.until(Scene::time_of(sequence));
+    }
+    EXPECT_FALSE(pair.strong.voter.may_own());
+    EXPECT_FALSE(pair.strong.outputs.back().to_owned);
+    EXPECT_TRUE(pair.weak.voter.may_own());
+}
+
+TEST(TwoVoters, ignore_strangers_and_their_own_samples)
+{
+    Scene scene(settings_of(3, {1, 2}, 1));
+    scene.frames(0, 49);
+    VotedAttitude stranger = scene.last();
+    stranger.voter = 9;
+    stranger.output_sequence = 1'000'000;
+    scene.at(scene.now, stranger);
+    VotedAttitude own = scene.last();
+    own.output_sequence = 2'000'000;
+    scene.at(scene.now, own);
+    scene.frames(50, 59);
+    EXPECT_EQ(scene.last().output_sequence, 60U);
+}
