@@ -79,6 +79,8 @@ tl::expected<void, std::string> check_figures(const DetectorSettings& settings)
         if (const auto positive = require_positive(value, name); !positive) return positive;
     if (settings.margin && !(std::isfinite(*settings.margin) && *settings.margin >= 0))
         return tl::unexpected(fmt::format("margin must be finite and at least 0, got {}", *settings.margin));
+    if (settings.doubt && !(*settings.doubt > 0 && *settings.doubt < 1))
+        return tl::unexpected(fmt::format("doubt must be a probability above 0 and below 1, got {}", *settings.doubt));
     if (settings.max_faults && *settings.max_faults == 0) return tl::unexpected(std::string("max_faults must be at least 1"));
     if (const auto pfa = false_alarm_probability(settings); !pfa) return tl::unexpected(pfa.error());
     return {};

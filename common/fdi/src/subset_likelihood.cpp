@@ -93,8 +93,10 @@ SubsetLikelihood::SubsetLikelihood(const geometry::SensorCluster& cluster, geome
       parity_(cluster.axes, sigma_),
       residual_(geometry::AxisVector::Zero(sigma_.size()))
 {
-    for (unsigned dof = 0; dof < max_axes; ++dof)
+    for (unsigned dof = 0; dof < max_axes; ++dof) {
         limit_[dof] = chi_square_quantile(dof, settings.pfa.value_or(default_false_alarm_probability));
+        doubt_limit_[dof] = settings.doubt ? chi_square_quantile(dof, *settings.doubt) : limit_[dof];
+    }
 
     std::size_t members = 0;
     std::size_t weights = 0;
@@ -194,25 +196,32 @@ void SubsetLikelihood::judge(const geometry::AxisVector& z, Assessment& assessme
     assessment.outcome = sum_of_squares_ <= limit_[q] ? Outcome::healthy : Outcome::blind;
     if (assessment.outcome == Outcome::healthy) return;
 
-    const double rounding = 64 * std::numeric_limits<double>::epsilon() * sum_of_squares_;  // of S0 minus what is explained
     std::size_t tried = 0;
     for (unsigned size = 1; size <= max_faults_; ++size) {
-        Score chosen{0, std::numeric_limits<double>::infinity()};
+        const Set* chosen = nullptr;
+        double least = std::numeric_limits<double>::infinity();
         for (; tried < sets_.size() && sets_[tried].size == size; ++tried) {
             const Set& set = sets_[tried];
             left_[tried] = left_by(set);
             remember({set.axes, left_[tried]});
-            if (left_[tried] < chosen.statistic && left_[tried] <= limit_[q - set.rank] + rounding) chosen = {set.axes, left_[tried]};
+            if (left_[tried] < least && left_[tried] <= limit_[q - set.rank] + rounding()) {
+                chosen = &set;
+                least = left_[tried];
+            }
         }
-        if (chosen.axes == 0) continue;
-        name(chosen, sum_of_squares_, rounding, tried, assessment);
-        return;
+        if (chosen != nullptr) return name(*chosen, least, tried, assessment);
     }
 }
 
-void SubsetLikelihood::name(const Score& chosen, double healthy, double rounding, std::size_t tried, Assessment& assessment) const
+/// Of S0 minus what is explained.
+double SubsetLikelihood::rounding() const
 {
-    const double rival = chosen.statistic + margin_ + rounding;
+    return 64 * std::numeric_limits<double>::epsilon() * sum_of_squares_;
+}
+
+void SubsetLikelihood::name(const Set& chosen, double statistic, std::size_t tried, Assessment& assessment) const
+{
+    const double rival = statistic + margin_ + rounding();
     const auto rivals =
         std::count_if(left_.begin(), left_.begin() + static_cast<std::ptrdiff_t>(tried), [&](double left) { return left <= rival; });
     if (rivals > 1) {
@@ -221,7 +230,9 @@ void SubsetLikelihood::name(const Score& chosen, double healthy, double rounding
         assessment.candidates_truncated = static_cast<std::size_t>(rivals) > assessment.candidate_count;
         return;
     }
-    assessment.outcome = healthy <= rival ? Outcome::suspect : Outcome::isolated;
+    const bool perhaps_none = sum_of_squares_ <= rival;
+    const bool perhaps_more = chosen.size < max_faults_ && statistic > doubt_limit_[parity_.redundancy() - chosen.rank] + rounding();
+    assessment.outcome = perhaps_none || perhaps_more ? Outcome::suspect : Outcome::isolated;
     assessment.isolated = chosen.axes;
 }
 

@@ -132,7 +132,7 @@ const std::vector<AssessMethod>& assess_methods()
         {"mean", {"--tolerance", "--max-faults"}, ""},
         {"glt", {"--sigma", "--pfa", "--margin"}, "per_axis, bias_estimate, parity"},
         {"parity-set", {"--sigma", "--pfa", "--margin"}, "parity"},
-        {"subset", {"--sigma", "--pfa", "--max-faults", "--margin", "--instruments"}, "scores"},
+        {"subset", {"--sigma", "--pfa", "--max-faults", "--margin", "--doubt", "--instruments"}, "scores"},
         {"extrapolation", {"--tolerance"}, "predicted, triad_modulus, working_triad, z1, z2, determinant, fallback"},
         {"vector", {"--tolerance"}, "predicted, triad_distance, working_triad, order"},
     };

@@ -9,13 +9,14 @@ namespace quorient::fdi {
 /// Lengths of time in seconds, tolerances in the unit of the measurement (rad of one increment for gyros).
 struct DetectorSettings {
     std::string method = "auto";  ///< auto: vector on 4 axes, else accumulating or glt; see make_detector
-    std::optional<double> tolerance;
-    std::optional<double> sigma;  ///< in place of the description's
-    std::optional<double> pfa;    ///< false-alarm probability of one frame
-    std::optional<double> bound;
-    std::optional<double> threshold;
-    std::optional<unsigned> max_faults;
-    std::optional<double> margin;
+    std::optional<double> tolerance{};
+    std::optional<double> sigma{};  ///< in place of the description's
+    std::optional<double> pfa{};    ///< false-alarm probability of one frame
+    std::optional<double> bound{};
+    std::optional<double> threshold{};
+    std::optional<unsigned> max_faults{};
+    std::optional<double> margin{};
+    std::optional<double> doubt{};  ///< subset: share of right isolations held back because one more, small fault is not ruled out
     bool instruments = false;  ///< a fault takes a whole instrument
     bool relaxed = false;
 };
