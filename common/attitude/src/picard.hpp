@@ -8,10 +8,12 @@ namespace quorient::attitude {
 
 /// The body rate inside one sample at its Gauss nodes: half of it, times the sample's interval [rad].
 struct HalfRate {
-    std::array<NodeRow, 3> component{};
+    NodeRow x = NodeRow::Zero();
+    NodeRow y = NodeRow::Zero();
+    NodeRow z = NodeRow::Zero();
 
     /// Largest norm over the nodes, squared.
-    double largest_squared() const;
+    double largest_squared() const { return (x * x + y * y + z * z).maxCoeff<Eigen::PropagateNaN>(); }
 };
 
 /// The fitted rate of `samples` (as many as the fit was made for).

@@ -76,7 +76,7 @@ std::array<Wide, longest_memory + 1> scaled_ends(std::span<const double> interva
 }
 
 struct EqualFits {
-    std::array<std::array<RateFit, longest_memory>, longest_memory> fit{};
+    std::array<std::array<RateFit, longest_memory>, longest_memory> fit;
 
     EqualFits()
     {
@@ -93,12 +93,12 @@ struct EqualFits {
 const GaussRule& gauss_rule()
 {
     static const GaussRule rule = [] {
-        GaussRule rounded{};
+        GaussRule rounded;
         for (std::size_t k = 0; k < node_count; ++k) {
-            rounded.node[k] = static_cast<double>(wide_rule().node[k]);
-            rounded.weight[k] = static_cast<double>(wide_rule().weight[k]);
+            const auto row = static_cast<Eigen::Index>(k);
+            rounded.weight[row] = static_cast<double>(wide_rule().weight[k]);
             for (std::size_t l = 0; l < node_count; ++l)
-                rounded.integral[l][k] = static_cast<double>(wide_rule().integral(l, wide_rule().node[k]));
+                rounded.integral[l][row] = static_cast<double>(wide_rule().integral(l, wide_rule().node[k]));
         }
         return rounded;
     }();
@@ -135,7 +135,7 @@ RateFit fit_rate(std::span<const double> intervals, std::size_t target)
         Wide rate = 0;
         for (std::size_t j = intervals.size(); j-- > 0;) {
             rate += scale[j + 1] * product * inverse[j + 1] * (sum - inverse[j + 1]);
-            fit.weight[j][k] = static_cast<double>(rate / 2);
+            fit.weight[j][static_cast<Eigen::Index>(k)] = static_cast<double>(rate / 2);
         }
     }
     return fit;

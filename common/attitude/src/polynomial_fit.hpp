@@ -12,11 +12,10 @@ namespace quorient::attitude {
 /// by x, i.e. 3e-14 at 2 rad in one sample with 8 (1e-9 with 6).
 inline constexpr std::size_t node_count = 8;
 
-using NodeRow = std::array<double, node_count>;
+using NodeRow = Eigen::Array<double, static_cast<int>(node_count), 1>;
 
 /// The Gauss-Legendre rule on [0, 1] and what integrates a polynomial through its nodes.
 struct GaussRule {
-    NodeRow node;
     NodeRow weight;
     std::array<NodeRow, node_count> integral;  ///< [l][k]: the integral of Lagrange polynomial l from 0 to node k
 };
@@ -30,7 +29,7 @@ const GaussRule& gauss_rule();
 /// the polynomial that interpolates the accumulated angle at the samples' ends (Lagrange form, centred and scaled by the
 /// target's interval, long double).
 struct RateFit {
-    std::array<NodeRow, longest_memory> weight{};
+    std::array<NodeRow, longest_memory> weight;  ///< of the samples fitted; the rest is not set
 };
 
 /// @param intervals  of the samples fitted, oldest first, 1 .. 12 of them, all above 0

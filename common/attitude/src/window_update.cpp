@@ -21,21 +21,26 @@ bool all_equal(std::span<const Sample> samples)
 
 // Whether differences of the rate shrink with their order, as they do for what the samples resolve. A sinusoid of frequency f
 // gives |second| / |first| = 2 sin(pi f / fs), white noise sqrt(3).
-bool resolved(std::span<const Sample> samples)
+bool resolved(std::span<const Sample> samples, bool equal)
 {
     if (samples.size() <= order_when_unresolved) return true;
+    const auto rate = [&](std::size_t i) -> Eigen::Vector3d {
+        return equal ? samples[i].increment : samples[i].increment / samples[i].interval_s;
+    };
     double first = 0;
     double second = 0;
+    Eigen::Vector3d at = rate(0);
     Eigen::Vector3d before = Eigen::Vector3d::Zero();
     for (std::size_t i = 1; i < samples.size(); ++i) {
-        const Eigen::Vector3d difference =
-            samples[i].increment / samples[i].interval_s - samples[i - 1].increment / samples[i - 1].interval_s;
+        const Eigen::Vector3d next = rate(i);
+        const Eigen::Vector3d difference = next - at;
         first += difference.squaredNorm();
         if (i > 1) second += (difference - before).squaredNorm();
         before = difference;
+        at = next;
     }
     const auto terms = static_cast<double>(samples.size() - 1);
-    return second / (terms - 1) <= first / terms;
+    return second * terms <= first * (terms - 1);
 }
 
 }  // namespace
@@ -46,7 +51,7 @@ bool same_start(double earlier_interval_s, double interval_s)
 }
 
 Stretch::Stretch(std::span<const Sample> samples)
-    : samples_(samples), equal_(all_equal(samples)), order_(resolved(samples) ? samples.size() : order_when_unresolved)
+    : samples_(samples), equal_(all_equal(samples)), order_(resolved(samples, equal_) ? samples.size() : order_when_unresolved)
 {
 }
 
