@@ -8,10 +8,14 @@ namespace quorient::fdi {
 std::string_view name(ModulusFallback fallback)
 {
     switch (fallback) {
-        case ModulusFallback::none: return "none";
-        case ModulusFallback::mean: return "mean";
-        case ModulusFallback::line: return "line";
-        case ModulusFallback::quadratic: return "quadratic";
+        case ModulusFallback::none:
+            return "none";
+        case ModulusFallback::mean:
+            return "mean";
+        case ModulusFallback::line:
+            return "line";
+        case ModulusFallback::quadratic:
+            return "quadratic";
     }
     return "unknown";
 }
@@ -55,12 +59,12 @@ ModulusPrediction predict_modulus(const std::array<double, 4>& moduli, double re
     return prediction;
 }
 
-tl::expected<std::unique_ptr<Detector>, std::string> ExtrapolationDetector::make(const DetectorSettings& settings,
-                                                                                 const geometry::SensorCluster& cluster)
+tl::expected<std::unique_ptr<ExtrapolationDetector>, std::string> ExtrapolationDetector::make(const DetectorSettings& settings,
+                                                                                              const geometry::SensorCluster& cluster)
 {
     const auto made = geometry_of(settings, cluster, "extrapolation");
     if (!made) return tl::unexpected(made.error());
-    return std::unique_ptr<Detector>(new ExtrapolationDetector(*made, settings.margin.value_or(made->bound)));
+    return std::unique_ptr<ExtrapolationDetector>(new ExtrapolationDetector(*made, settings.margin.value_or(made->bound)));
 }
 
 void ExtrapolationDetector::observe(const Frame& frame)

@@ -22,7 +22,8 @@ auto FourAxisDetector::geometry_of(const DetectorSettings& settings, const geome
 {
     const std::string name(method);
     if (cluster.size() != axis_count)
-        return tl::unexpected(name + " works on 4 axes, this cluster has " + std::to_string(cluster.size()) + "; use glt, subset or guaranteed");
+        return tl::unexpected(name + " works on 4 axes, this cluster has " + std::to_string(cluster.size()) +
+                              "; use glt, subset or guaranteed");
     if (const auto figures = check_figures(settings); !figures) return tl::unexpected(figures.error());
     const auto pfa = false_alarm_probability(settings);
     if (!pfa) return tl::unexpected(pfa.error());
@@ -53,7 +54,10 @@ FourAxisDetector::FourAxisDetector(const Geometry& made)
 {
 }
 
-double FourAxisDetector::resolution() const { return bound_ / (2 * parity_vector_.cwiseAbs().sum()); }
+double FourAxisDetector::resolution() const
+{
+    return bound_ / (2 * parity_vector_.cwiseAbs().sum());
+}
 
 void FourAxisDetector::assess(const Measurement& measurement, Assessment& assessment)
 {

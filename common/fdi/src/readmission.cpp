@@ -11,6 +11,10 @@ namespace {
 /// A healthy residual exceeds this many standard deviations once in a million frames (two-sided normal quantile).
 constexpr double agreement_sigmas = 4.892;
 
+/// The sum over a whole trial may reach this many. A healthy axis that fails (one trial in twenty) only waits for the next one, while a
+/// weak fault gets a trial after every failure and must lose them all.
+constexpr double trial_sigmas = 2;
+
 }  // namespace
 
 Readmission::Readmission(const geometry::SensorCluster& cluster, double healthy_s)
@@ -92,7 +96,7 @@ bool Readmission::serve(Trial& trial, std::size_t axis, const Measurement& measu
     if (trial.healthy_s < healthy_s_) return false;
     // Frames that did not serve lie between those that did, so the carried remainders no longer cancel: they add as noise.
     const double frame_variance = noise_(i) * noise_(i) + quantisation_(i) * quantisation_(i) / 12;
-    const bool unbiased = std::abs(trial.residual_sum) <= agreement_sigmas * std::sqrt(trial.frames * frame_variance) + quantisation_(i);
+    const bool unbiased = std::abs(trial.residual_sum) <= trial_sigmas * std::sqrt(trial.frames * frame_variance) + quantisation_(i);
     trial = {.exposed = !unbiased, .excitation = trial.excitation};
     return unbiased;
 }

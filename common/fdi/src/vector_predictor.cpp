@@ -26,7 +26,8 @@ double triad_variance(const std::array<geometry::Triad, 4>& triads, const Eigen:
     for (const auto& triad : triads) {
         double sum = 0;
         for (std::size_t place = 0; place < 3; ++place)
-            sum += triad.body_from_axes.col(static_cast<Eigen::Index>(place)).squaredNorm() * variance(static_cast<Eigen::Index>(triad.axis[place]));
+            sum += triad.body_from_axes.col(static_cast<Eigen::Index>(place)).squaredNorm() *
+                   variance(static_cast<Eigen::Index>(triad.axis[place]));
         largest = std::max(largest, sum);
     }
     return largest;
@@ -34,12 +35,12 @@ double triad_variance(const std::array<geometry::Triad, 4>& triads, const Eigen:
 
 }  // namespace
 
-tl::expected<std::unique_ptr<Detector>, std::string> VectorPredictor::make(const DetectorSettings& settings,
-                                                                           const geometry::SensorCluster& cluster)
+tl::expected<std::unique_ptr<VectorPredictor>, std::string> VectorPredictor::make(const DetectorSettings& settings,
+                                                                                  const geometry::SensorCluster& cluster)
 {
     const auto made = geometry_of(settings, cluster, "vector");
     if (!made) return tl::unexpected(made.error());
-    return std::unique_ptr<Detector>(new VectorPredictor(*made, settings.margin.value_or(default_margin)));
+    return std::unique_ptr<VectorPredictor>(new VectorPredictor(*made, settings.margin.value_or(default_margin)));
 }
 
 VectorPredictor::VectorPredictor(const Geometry& made, double margin)

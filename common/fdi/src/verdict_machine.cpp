@@ -16,7 +16,10 @@ bool lists_rival(const Assessment& assessment, AxisMask named, AxisMask known)
 }
 
 /// One frame of guard costs a little noise; one frame too late costs a contaminated increment.
-std::uint64_t guarded(std::uint64_t onset, unsigned guard) { return onset > guard ? onset - guard : 0; }
+std::uint64_t guarded(std::uint64_t onset, unsigned guard)
+{
+    return onset > guard ? onset - guard : 0;
+}
 
 }  // namespace
 

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "quorient/fdi/detector.hpp"
-#include "quorient/geometry/sensor_cluster.hpp"
+#include "test_clusters.hpp"
 
 #include <cstdlib>
 #include <filesystem>
@@ -42,13 +41,6 @@ inline AxisMask mask_of(const nlohmann::json& sensors)
     AxisMask mask = 0;
     for (const auto& sensor : sensors) mask |= axis_bit(sensor.get<std::size_t>() - 1);
     return mask;
-}
-
-inline Assessment assess(Detector& detector, const std::vector<double>& z)
-{
-    Assessment assessment;
-    detector.assess({.identity = {}, .increment = z, .valid = all_axes(z.size())}, assessment);
-    return assessment;
 }
 
 }  // namespace quorient::fdi

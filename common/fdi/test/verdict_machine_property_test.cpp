@@ -91,9 +91,8 @@ AxisMask justified(const History& history, const VerdictSettings& settings)
     const AxisMask named = history.recent.back().assessment.isolated & ~history.isolated_before;
     const bool newest_names = names_without_rival(history.recent.back(), named, history.isolated_before);
     const auto window = std::min<std::size_t>(history.named.size(), settings.confirm_window);
-    const auto agreeing = std::count_if(history.named.end() - static_cast<std::ptrdiff_t>(window), history.named.end(), [&](const Frame& f) {
-        return names_without_rival(f, named, history.isolated_before);
-    });
+    const auto agreeing = std::count_if(history.named.end() - static_cast<std::ptrdiff_t>(window), history.named.end(),
+                                        [&](const Frame& f) { return names_without_rival(f, named, history.isolated_before); });
     if (newest_names && agreeing >= settings.confirm_required) axes |= named;
 
     const auto frames = std::min<std::size_t>(history.recent.size(), settings.confirm_window);
@@ -140,7 +139,10 @@ void expect_only_explained_blame(const FaultVerdict& verdict, AxisMask explained
     for (unsigned i = 0; i < verdict.candidate_count; ++i) ASSERT_EQ(verdict.candidate_set[i] & ~explained, 0U);
 }
 
-bool same(const FaultVerdict& a, const FaultVerdict& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+bool same(const FaultVerdict& a, const FaultVerdict& b)
+{
+    return std::memcmp(&a, &b, sizeof a) == 0;
+}
 
 /// A consumer that sees every verdict, some twice, in any order, holds the newest one's state.
 void expect_consumer_agrees(std::vector<FaultVerdict> verdicts, Random& random)
@@ -229,11 +231,16 @@ struct Play {
     void event()
     {
         switch (random.below(24)) {
-            case 0: return stale_frame();
-            case 1: return readmit();
-            case 2: return random.one_in(3) ? adopt() : frame();
-            case 3: return random.one_in(3) ? new_epoch() : frame();
-            default: return frame();
+            case 0:
+                return stale_frame();
+            case 1:
+                return readmit();
+            case 2:
+                return random.one_in(3) ? adopt() : frame();
+            case 3:
+                return random.one_in(3) ? new_epoch() : frame();
+            default:
+                return frame();
         }
     }
 };
@@ -247,8 +254,10 @@ TEST(VerdictMachineProperties, hold_after_every_event_of_random_sequences)
     for (int i = 0; i < sequences; ++i) {
         SCOPED_TRACE("sequence " + std::to_string(i));
         const unsigned window = 1 + random.below(5);
-        const VerdictSettings settings{
-            .confirm_required = 1 + random.below(window), .confirm_window = window, .warm_up_frames = random.below(4), .onset_guard_frames = random.below(3)};
+        const VerdictSettings settings{.confirm_required = 1 + random.below(window),
+                                       .confirm_window = window,
+                                       .warm_up_frames = random.below(4),
+                                       .onset_guard_frames = random.below(3)};
         Play play{.settings = settings, .machine = VerdictMachine::make(settings, axis_count).value(), .random = random};
         for (int event = 0; event < events_per_sequence; ++event) {
             play.event();

@@ -8,9 +8,15 @@ namespace {
 constexpr AxisMask axis_1 = 0b0010;
 constexpr AxisMask axis_2 = 0b0100;
 
-Assessment healthy() { return {.outcome = Outcome::healthy}; }
+Assessment healthy()
+{
+    return {.outcome = Outcome::healthy};
+}
 
-Assessment naming(AxisMask axes) { return {.outcome = Outcome::isolated, .isolated = axes}; }
+Assessment naming(AxisMask axes)
+{
+    return {.outcome = Outcome::isolated, .isolated = axes};
+}
 
 Assessment explained_by(std::initializer_list<AxisMask> sets, Outcome outcome = Outcome::ambiguous)
 {

@@ -45,8 +45,8 @@ ModulusPrediction predict_modulus(const std::array<double, 4>& moduli, double re
 /// lets a healthy modulus differ by.
 class ExtrapolationDetector final : public FourAxisDetector {
 public:
-    static tl::expected<std::unique_ptr<Detector>, std::string> make(const DetectorSettings& settings,
-                                                                     const geometry::SensorCluster& cluster);
+    static tl::expected<std::unique_ptr<ExtrapolationDetector>, std::string> make(const DetectorSettings& settings,
+                                                                                  const geometry::SensorCluster& cluster);
 
     /// Of the newest complete frame; nullptr while fewer than four moduli are known.
     const ModulusPrediction* prediction() const { return predicted_ ? &prediction_ : nullptr; }

@@ -19,8 +19,8 @@ namespace quorient::fdi {
 /// This base holds what such methods share. A frame is suspicious when |v'z| exceeds
 ///   bound = 2 sum |v_i| quantum_i + z(1 - pfa/2) sqrt(sum v_i^2 sigma_i^2)     (v of unit norm; or settings.tolerance),
 /// twice what carried quantisation can do, plus the noise's quantile. From the first suspicious frame on the history is *held*: it
-/// takes in nothing more until the parity was below half the bound for `release_frames` frames, then it is learnt anew. A frame that does not
-/// follow its predecessor (a gap, another interval) starts the history again.
+/// takes in nothing more until the parity was below half the bound for `release_frames` frames, then it is learnt anew. A frame that does
+/// not follow its predecessor (a gap, another interval) starts the history again.
 ///
 /// The first `warm_up_frames` frames are warming_up. A fault that is there before any history leaves all four axes as candidates.
 /// A frame with one axis missing cannot contradict itself: it is healthy with statistic 0. With an axis excluded every frame is,
@@ -36,8 +36,8 @@ public:
     unsigned detectable_remaining() const final { return excluded_ == 0 ? 1 : 0; }
     void reset() final;
 
-    const Eigen::Vector4d& parity_vector() const { return parity_vector_; }  ///< v, unit norm
-    double bound() const { return bound_; }                                  ///< of |v'z| [unit of z]
+    const Eigen::Vector4d& parity_vector() const { return parity_vector_; }           ///< v, unit norm
+    double bound() const { return bound_; }                                           ///< of |v'z| [unit of z]
     const geometry::Triad& triad(std::size_t index) const { return triads_[index]; }  ///< T1..T4, lexicographic
     bool holding() const { return holding_; }
 

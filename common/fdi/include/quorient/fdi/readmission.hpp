@@ -27,10 +27,10 @@ public:
 private:
     struct Trial {
         bool exposed = false;
-        double excitation = 0;   ///< |rate along the axis| that exposed the fault [rad/s; m/s^2]
-        double healthy_s = 0;    ///< served so far
-        double frames = 0;       ///< that served
-        double residual_sum = 0; ///< over them [unit of z]
+        double excitation = 0;    ///< |rate along the axis| that exposed the fault [rad/s; m/s^2]
+        double healthy_s = 0;     ///< served so far
+        double frames = 0;        ///< that served
+        double residual_sum = 0;  ///< over them [unit of z]
     };
 
     void prepare(AxisMask working);
@@ -40,11 +40,11 @@ private:
 
     geometry::SensorCluster cluster_;
     double healthy_s_;
-    AxisMask working_ = 0;                ///< what the weights below were made for
-    bool spans_ = false;                  ///< the working axes span space
-    geometry::AxisMatrix weight_;         ///< row i: prediction of axis i from the working axes
-    geometry::AxisVector noise_;          ///< standard deviation of one residual [unit of z]
-    geometry::AxisVector quantisation_;   ///< largest |residual| that carried quantisation alone makes [unit of z]
+    AxisMask working_ = 0;               ///< what the weights below were made for
+    bool spans_ = false;                 ///< the working axes span space
+    geometry::AxisMatrix weight_;        ///< row i: prediction of axis i from the working axes
+    geometry::AxisVector noise_;         ///< standard deviation of one residual [unit of z]
+    geometry::AxisVector quantisation_;  ///< largest |residual| that carried quantisation alone makes [unit of z]
     std::array<Trial, max_axes> trial_{};
 };
 

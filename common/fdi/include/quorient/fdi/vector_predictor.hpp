@@ -26,8 +26,8 @@ class VectorPredictor final : public FourAxisDetector {
 public:
     static constexpr std::size_t history_length = 2048;
 
-    static tl::expected<std::unique_ptr<Detector>, std::string> make(const DetectorSettings& settings,
-                                                                     const geometry::SensorCluster& cluster);
+    static tl::expected<std::unique_ptr<VectorPredictor>, std::string> make(const DetectorSettings& settings,
+                                                                            const geometry::SensorCluster& cluster);
 
     struct Prediction {
         Eigen::Vector3d body = Eigen::Vector3d::Zero();  ///< [unit of z]
@@ -48,8 +48,21 @@ private:
         std::size_t length;
     };
 
-    static constexpr std::array<Polynomial, 15> polynomials{
-        {{1, 3}, {2, 3}, {3, 4}, {1, 8}, {2, 8}, {3, 8}, {1, 16}, {2, 16}, {3, 16}, {2, 48}, {3, 48}, {2, 128}, {3, 128}, {2, 320}, {3, 320}}};
+    static constexpr std::array<Polynomial, 15> polynomials{{{1, 3},
+                                                             {2, 3},
+                                                             {3, 4},
+                                                             {1, 8},
+                                                             {2, 8},
+                                                             {3, 8},
+                                                             {1, 16},
+                                                             {2, 16},
+                                                             {3, 16},
+                                                             {2, 48},
+                                                             {3, 48},
+                                                             {2, 128},
+                                                             {3, 128},
+                                                             {2, 320},
+                                                             {3, 320}}};
     static constexpr std::size_t tried_every_frame = 9;  ///< the first of them: the long ones only help over long horizons
     static constexpr std::size_t longest = 320;
 
@@ -75,7 +88,7 @@ private:
     double parity_sigma_;
     double parity_quantum_;
     double triad_sigma_;  ///< rms length of the error of one triad's body vector by noise and quantisation [unit of z]
-    std::array<std::array<double, longest>, tried_every_frame> weights_{};      ///< of the one-frame predictions
+    std::array<std::array<double, longest>, tried_every_frame> weights_{};  ///< of the one-frame predictions
     std::array<Eigen::Vector3d, tried_every_frame> one_frame_;
     std::array<double, tried_every_frame> error_{};  ///< squared, forgetting
     std::array<Eigen::Vector3d, history_length> body_;

@@ -1,0 +1,243 @@
+// The four-axis methods in the pipeline: quantised motion, a fault at a random time on a random axis, verdicts by the state machine.
+
+#include "coning_model.hpp"
+#include "quorient/fdi/extrapolation.hpp"
+#include "quorient/fdi/fault_monitor.hpp"
+#include "quorient/fdi/vector_predictor.hpp"
+#include "quorient/geometry/layouts.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+
+namespace quorient::fdi {
+namespace {
+
+constexpr double quantum = 0.4848e-6;
+constexpr double interval_s = 0.005;
+
+geometry::SensorCluster cone_4()
+{
+    auto cluster = geometry::layout("cone-4").value();
+    cluster.quantum.setConstant(quantum);
+    cluster.interval_s = interval_s;
+    return cluster;
+}
+
+/// A unit on the paper's motion whose axis `faulty` measures 0.8 of the truth between two frames.
+struct Scenario {
+    double begin_s = 0;
+    std::size_t faulty = 1;
+    std::uint64_t from = never;
+    std::uint64_t until = never;
+    std::uint64_t frames = 0;
+};
+
+struct Outcomes {
+    AxisMask isolated = 0;
+    std::uint64_t isolated_at = never;
+    std::uint64_t excluded_from = never;
+    std::uint64_t first_suspicious = never;
+    std::uint64_t alarms = 0;       ///< frames in any state but warming up and healthy, while nothing was isolated
+    bool named_in_passing = false;  ///< some other axis was named by a SUSPECT verdict
+};
+
+class Unit {
+public:
+    Unit(const std::string& method, std::uint64_t seed)
+        : cluster_(cone_4()),
+          monitor_(FaultMonitor::make({.method = method}, {}, cluster_).value()),
+          random_(seed),
+          quantise_(quantum, random_)
+    {
+    }
+
+    Outcomes play(const Scenario& scenario, bool stop_when_isolated = true)
+    {
+        Outcomes outcomes;
+        for (std::uint64_t sequence = 0; sequence < scenario.frames; ++sequence) {
+            const FaultVerdict& verdict = monitor_.assess(frame(scenario, sequence));
+            const auto state = static_cast<VerdictState>(verdict.state);
+            if (verdict.isolated_mask == 0 && state > VerdictState::healthy) ++outcomes.alarms;
+            if (monitor_.assessment().statistic > monitor_.assessment().threshold)
+                outcomes.first_suspicious = std::min(outcomes.first_suspicious, sequence);
+            if ((verdict.suspect_mask & ~axis_bit(scenario.faulty)) != 0) outcomes.named_in_passing = true;
+            if (verdict.isolated_mask != 0 && outcomes.isolated_at == never) {
+                outcomes.isolated_at = sequence;
+                outcomes.excluded_from = verdict.excluded_from[scenario.faulty];
+            }
+            outcomes.isolated |= verdict.isolated_mask;
+            if (stop_when_isolated && outcomes.isolated != 0) break;
+        }
+        return outcomes;
+    }
+
+    FaultMonitor& monitor() { return monitor_; }
+
+    SensorFrame frame(const Scenario& scenario, std::uint64_t sequence)
+    {
+        const Eigen::Vector4d exact =
+            cluster_.axes * motion_.increment(scenario.begin_s + interval_s * static_cast<double>(sequence), interval_s);
+        SensorFrame frame;
+        frame.epoch = 1;
+        frame.sequence = sequence;
+        frame.interval_s = interval_s;
+        frame.axis_count = 4;
+        frame.valid_mask = 0b1111;
+        for (std::size_t axis = 0; axis < 4; ++axis) {
+            const bool faulty = axis == scenario.faulty && sequence >= scenario.from && sequence < scenario.until;
+            frame.increment[axis] = quantise_(axis, exact(static_cast<Eigen::Index>(axis)) * (faulty ? 0.8 : 1.0));
+        }
+        return frame;
+    }
+
+    /// The fault's parity in the first two frames is well beyond the bound, so that it can be confirmed in them.
+    bool exposed(const Scenario& scenario) const
+    {
+        for (std::uint64_t sequence = scenario.from; sequence < scenario.from + 2; ++sequence) {
+            const Eigen::Vector4d exact =
+                cluster_.axes * motion_.increment(scenario.begin_s + interval_s * static_cast<double>(sequence), interval_s);
+            if (0.2 * 0.5 * std::abs(exact(static_cast<Eigen::Index>(scenario.faulty))) < 6 * quantum) return false;
+        }
+        return true;
+    }
+
+private:
+    ConingModel motion_;
+    geometry::SensorCluster cluster_;
+    FaultMonitor monitor_;
+    std::mt19937_64 random_;
+    CarryingQuantiser quantise_;
+};
+
+TEST(FourAxisIsolation, the_vector_predictor_names_the_soft_axis_at_any_phase_and_never_another)
+{
+    constexpr std::uint64_t seed = 1400;
+    constexpr int draws = 1400;
+    std::mt19937_64 random(seed);
+    int exposed = 0;
+    int right = 0;
+    for (int draw = 0; draw < draws; ++draw) {
+        SCOPED_TRACE("seed " + std::to_string(seed) + ", draw " + std::to_string(draw));
+        Scenario scenario{
+            .begin_s = std::uniform_real_distribution<double>(0, 126)(random), .faulty = random() % 4, .from = 400 + random() % 40};
+        scenario.frames = scenario.from + 400;
+        Unit unit("vector", random());
+        const Outcomes outcomes = unit.play(scenario);
+        ASSERT_EQ(outcomes.isolated & ~axis_bit(scenario.faulty), 0U) << "another axis was isolated";
+        ASSERT_FALSE(outcomes.named_in_passing);
+        ASSERT_GE(outcomes.first_suspicious, scenario.from) << "an alarm before the fault";
+        right += outcomes.isolated != 0 ? 1 : 0;
+        if (!unit.exposed(scenario)) continue;
+        ++exposed;
+        ASSERT_EQ(outcomes.isolated, axis_bit(scenario.faulty));
+        ASSERT_LE(outcomes.isolated_at, scenario.from + 2) << "later than within three frames";
+        ASSERT_LE(outcomes.excluded_from, scenario.from) << "the onset was placed after the fault began";
+        ASSERT_GE(outcomes.excluded_from + 200, scenario.from);
+    }
+    EXPECT_GT(exposed, draws * 9 / 10);
+    // The others: the axis hardly turns when the fault begins, and there is nothing to be seen of it for up to hundreds of frames.
+    EXPECT_GT(right, draws * 97 / 100);
+}
+
+TEST(FourAxisIsolation, the_vector_predictor_is_silent_without_a_fault)
+{
+    std::mt19937_64 random(77);
+    for (int draw = 0; draw < 50; ++draw) {
+        Unit unit("vector", random());
+        const Outcomes outcomes = unit.play({.begin_s = std::uniform_real_distribution<double>(0, 126)(random), .frames = 4000});
+        EXPECT_EQ(outcomes.alarms, 0U) << "draw " << draw;
+        EXPECT_EQ(outcomes.isolated, 0U) << "draw " << draw;
+    }
+}
+
+/// The demonstration's default scenario: 20 s, axis 1 soft from 8 s to 18 s.
+class Demonstration : public ::testing::TestWithParam<const char*> {
+protected:
+    Scenario scenario_{.begin_s = 0, .faulty = 1, .from = 1600, .until = 3600, .frames = 4000};
+};
+
+TEST_P(Demonstration, isolates_the_second_axis_within_three_frames_and_keeps_to_it)
+{
+    Unit unit(GetParam(), 11);
+    const Outcomes outcomes = unit.play(scenario_, false);
+    EXPECT_EQ(outcomes.isolated, 0b0010U);
+    EXPECT_GE(outcomes.isolated_at, scenario_.from);
+    EXPECT_LE(outcomes.isolated_at, scenario_.from + 2);
+    EXPECT_LE(outcomes.excluded_from, scenario_.from);
+    EXPECT_EQ(unit.monitor().detector().detectable_remaining(), 0U);
+}
+
+TEST_P(Demonstration, is_silent_without_the_fault)
+{
+    scenario_.from = never;
+    Unit unit(GetParam(), 11);
+    const Outcomes outcomes = unit.play(scenario_, false);
+    EXPECT_EQ(outcomes.alarms, 0U);
+    EXPECT_EQ(outcomes.isolated, 0U);
+    EXPECT_EQ(unit.monitor().detector().detectable_remaining(), 1U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, Demonstration, ::testing::Values("vector", "extrapolation"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
+TEST(FourAxisIsolation, names_all_four_axes_while_nothing_is_known_of_the_motion)
+{
+    for (const char* method : {"vector", "extrapolation"}) {
+        Unit unit(method, 5);
+        const Scenario scenario{.faulty = 2, .from = 0, .frames = 60};
+        const Outcomes outcomes = unit.play(scenario);
+        EXPECT_EQ(outcomes.isolated, 0U) << method << " guessed";
+        EXPECT_EQ(unit.monitor().assessment().outcome, Outcome::ambiguous);
+        EXPECT_EQ(unit.monitor().assessment().candidate_count, 4);
+    }
+}
+
+TEST(FourAxisIsolation, starts_its_history_again_after_a_gap_instead_of_extrapolating_across_it)
+{
+    Unit unit("vector", 6);
+    const Scenario healthy{.frames = 300};
+    unit.play(healthy);
+    const Scenario scenario{.faulty = 1, .from = 400};
+    unit.monitor().assess(unit.frame(scenario, 400));  // 100 frames were lost
+    EXPECT_EQ(unit.monitor().assessment().outcome, Outcome::ambiguous);
+    EXPECT_EQ(unit.monitor().assessment().candidate_count, 4);
+}
+
+TEST(FourAxisIsolation, lets_a_spike_of_one_frame_pass_without_isolating)
+{
+    Unit unit("vector", 7);
+    const Outcomes outcomes = unit.play({.faulty = 1, .from = 400, .until = 401, .frames = 800}, false);
+    EXPECT_EQ(outcomes.isolated, 0U);
+    EXPECT_EQ(outcomes.alarms, 3U) << "suspect while the frame is in the confirmation window";
+}
+
+TEST(FourAxisIsolation, goes_on_without_error_on_three_axes)
+{
+    Unit unit("vector", 8);
+    const Scenario scenario{.faulty = 1, .from = 400, .frames = 2000};
+    unit.play(scenario, false);
+    EXPECT_EQ(unit.monitor().assessment().outcome, Outcome::healthy);
+    EXPECT_EQ(unit.monitor().assessment().statistic, 0);
+}
+
+TEST(FourAxisIsolation, refuses_what_it_cannot_serve_and_says_why)
+{
+    const auto refusal = [](const geometry::SensorCluster& cluster) {
+        const auto made = VectorPredictor::make({}, cluster);
+        return made ? std::string{} : made.error();
+    };
+    EXPECT_THAT(refusal(geometry::layout("cone-6").value()), ::testing::HasSubstr("4 axes"));
+    EXPECT_THAT(refusal(geometry::layout("cone-4").value()), ::testing::HasSubstr("quantum"));
+    geometry::Axes flat(4, 3);
+    flat << 1, 0, 0, 0, 1, 0, std::sqrt(0.5), std::sqrt(0.5), 0, 0, 0, 1;
+    auto cluster = geometry::make_cluster(flat).value();
+    cluster.quantum.setConstant(quantum);
+    EXPECT_THAT(refusal(cluster), ::testing::HasSubstr("one plane"));
+    EXPECT_FALSE(VectorPredictor::make({.tolerance = std::nan("")}, cone_4()));
+}
+
+}  // namespace
+}  // namespace quorient::fdi
