@@ -95,7 +95,9 @@ void Voter::Brain::notice(std::int64_t now_ns)
         start_over(away_ns);
     } else if (*now_ > promised_ns_ + interval_ns_ / 2) {
         drained_ns_ = *now_ + interval_ns_ / 2;
-        if (away_ns > lease_ns_ / 2) ranking_.take_care_until(*now_ + lease_ns_);
+        if (away_ns <= lease_ns_ / 2 || !ranking_.has_others()) return;
+        ranking_.take_care_until(*now_ + lease_ns_);  // another voter may just have taken over
+        synchronised_ns_ = std::max(synchronised_ns_.value_or(0), drained_ns_);
     }
 }
 
@@ -383,8 +385,6 @@ void Voter::Brain::coast_if_due()
     output.level = static_cast<std::uint8_t>(level_);
     output.vouching_mask = 0;
     output.spread_rad = 0;
-    output.excluded_mask = board_.excluded();
-    for (LaneIndex lane = 0; lane < board_.size(); ++lane) output.excluded_why[lane] = static_cast<std::uint8_t>(board_.lane(lane).why());
     emit(output, true);
 }
 
