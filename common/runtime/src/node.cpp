@@ -61,6 +61,7 @@ Node::Node(NodeSettings settings, bus::Bus& bus, EventLoop& loop)
 
 Node::~Node()
 {
+    main_output_ = nullptr;  // the service's endpoints are gone already
     report(EventCode::goodbye, Severity::info, {status_.epoch, status_.sequence}, 0, "stops in order");
     set_state(ServiceState::stopping);
 }
@@ -125,7 +126,8 @@ void Node::look_at_endpoints()
             report(EventCode::incompatible_qos, Severity::warning_high, none, 0,
                    fmt::format("{}: a peer asks for another {}; see the QoS table in idl/README.md", endpoint.what, now.policy));
         }
-        if (endpoint.must_match && now.matched == 0 && !endpoint.told_unmatched && clock().steady_ns() - started_ns_ > match_patience_ns) {
+        if (now.matched > 0) endpoint.must_match = false;
+        if (endpoint.must_match && !endpoint.told_unmatched && clock().steady_ns() - started_ns_ > match_patience_ns) {
             endpoint.told_unmatched = true;
             report(EventCode::no_match, Severity::warning_high, none, 0,
                    fmt::format("{} matched nobody for 5 s: is the peer running, in this domain, on this network, with this IDL?",

@@ -44,6 +44,7 @@ void parse_detection(Section section, DetectorProcess& detector)
     section.number("threshold", detection.threshold, runtime::above_zero);
     section.whole("max_faults", detection.max_faults);
     section.number("margin", detection.margin, runtime::not_negative);
+    section.number("doubt", detection.doubt, {.lowest = 0, .highest = 1});
     section.boolean("instruments", detection.instruments);
     section.boolean("relaxed", detection.relaxed);
     section.whole("confirm_required", detector.verdict.confirm_required, 1, 32);

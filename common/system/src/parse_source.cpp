@@ -114,9 +114,6 @@ void parse_log(Section& source, System& system)
     source.number("from_s", log.from_s, runtime::not_negative);
     source.number("to_s", log.to_s, runtime::above_zero);
     source.number("speed", system.sensor.source.speed, runtime::above_zero);
-    std::vector<double> instruments;
-    source.numbers("instruments", instruments, {.lowest = 0, .highest = max_axes - 1});
-    log.instruments.assign(instruments.begin(), instruments.end());
     double rate_hz = 62.5;
     source.number("rate_hz", rate_hz, {.lowest = 1, .highest = 20'000, .unit = "Hz"});
     system.interval_s = 1 / rate_hz;

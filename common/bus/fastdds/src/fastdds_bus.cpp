@@ -3,9 +3,9 @@
 #include "quorient/bus/interfaces.hpp"
 #include "types.hpp"
 
-#include <fastrtps/utils/IPLocator.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
 #include <fmt/format.h>
 #include <cstring>
 #include <fastdds/dds/core/condition/WaitSet.hpp>
@@ -240,17 +240,30 @@ private:
     std::map<std::string, dds::Topic*> topics_;
 };
 
-/// Ports that a peer's participants listen on for unicast discovery [RTPS 9.6.1.1, default port mapping].
-constexpr std::uint32_t participants_per_peer = 30;
+/// Participants that a host may have, by the default port mapping [RTPS 9.6.1.1]: discovery at 7400 + 250 domain + 10 + 2 p, data one
+/// above.
+constexpr std::uint32_t participants_per_host = 30;
 
+/// Where to look for peers, and at the same time every address that samples may go to: Fast DDS 2.9.1 (built with statistics) aborts when
+/// it matches an endpoint behind an address that it has not opened yet, which a list known from the start prevents
+/// [eProsima/Fast-DDS issue 3285].
 void add_peer(const std::string& address, std::uint32_t domain, eprosima::fastrtps::rtps::LocatorList_t& peers)
 {
-    for (std::uint32_t participant = 0; participant < participants_per_peer; ++participant) {
+    for (std::uint32_t port = 10; port < 10 + 2 * participants_per_host; ++port) {
         eprosima::fastrtps::rtps::Locator_t locator;
         eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, address);
-        locator.port = 7400 + 250 * domain + 10 + 2 * participant;
+        locator.port = 7400 + 250 * domain + port;
         peers.push_back(locator);
     }
+}
+
+/// Multicast discovery goes on beside the list.
+void add_multicast(std::uint32_t domain, eprosima::fastrtps::rtps::LocatorList_t& peers)
+{
+    eprosima::fastrtps::rtps::Locator_t locator;
+    eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, "239.255.0.1");
+    locator.port = 7400 + 250 * domain;
+    peers.push_back(locator);
 }
 
 void add_transports(const Settings& settings, dds::TransportConfigQos& transports)
@@ -278,6 +291,10 @@ tl::expected<std::unique_ptr<Bus>, std::string> open_fastdds(const Settings& set
     builtin.discovery_config.leaseDuration_announcementperiod = seconds(1);
     builtin.discovery_config.leaseDuration = seconds(10);
     for (const auto& peer : settings.peers) add_peer(peer, settings.domain, builtin.initialPeersList);
+    if (settings.peers.empty()) {
+        for (const auto& own : addresses_of(settings.interface)) add_peer(own, settings.domain, builtin.initialPeersList);
+        add_multicast(settings.domain, builtin.initialPeersList);
+    }
 
     auto* participant = dds::DomainParticipantFactory::get_instance()->create_participant(settings.domain, qos);
     if (!participant) return tl::make_unexpected(fmt::format("Fast DDS: cannot join domain {}", settings.domain));

@@ -69,7 +69,7 @@ private:
     struct Watched {
         std::string what;
         std::function<bus::EndpointStatus()> status;
-        bool must_match;
+        bool must_match;  ///< and has not yet
         std::uint32_t incompatible = 0;
         bool told_unmatched = false;
     };

@@ -6,7 +6,7 @@
 #include "quorient/geometry/sensor_cluster.hpp"
 #include "quorient/runtime/node.hpp"
 #include "quorient/runtime/realtime.hpp"
-#include "quorient/simulation/instrument.hpp"
+#include "quorient/simulation/simulated_instrument.hpp"
 #include "quorient/voting/voter_settings.hpp"
 
 #include <cstdint>
@@ -22,10 +22,8 @@ namespace quorient::system {
 struct ProcessSettings {
     runtime::NodeSettings node;
     bus::Settings bus;
+    runtime::RealtimeSettings realtime;
     bool spin = false;  ///< spin instead of blocking
-    int priority = 0;   ///< SCHED_FIFO priority, 0 = ordinary scheduling
-    bool lock_memory = false;
-    std::vector<std::uint32_t> processors;  ///< allowed, empty = all
 };
 
 /// A log played as if the sensors were here.
@@ -34,7 +32,6 @@ struct LogSettings {
     double rest_s = 10;  ///< the log's beginning, at rest: biases and sigmas come from it
     double from_s = 0;
     std::optional<double> to_s;
-    std::vector<std::uint32_t> instruments;  ///< in use, empty = all
 };
 
 struct SourceSettings {

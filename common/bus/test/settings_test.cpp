@@ -1,0 +1,85 @@
+#include "quorient/bus/bus.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace quorient::bus {
+
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(BusSettings, refuse_an_unknown_vendor_by_name)
+{
+    const auto vendor = vendor_from("opendds");
+    ASSERT_FALSE(vendor);
+    EXPECT_THAT(vendor.error(), HasSubstr("opendds"));
+    EXPECT_EQ(vendor_from("fastdds"), Vendor::fastdds);
+}
+
+TEST(BusSettings, on_loopback_have_no_problem)
+{
+    EXPECT_THAT(problems(Settings{}), IsEmpty());
+}
+
+TEST(BusSettings, refuse_a_domain_whose_ports_do_not_exist)
+{
+    Settings settings;
+    settings.domain = 231;
+    EXPECT_THAT(problems(settings), ElementsAre(HasSubstr("231")));
+    EXPECT_FALSE(open(settings));
+}
+
+TEST(BusSettings, refuse_an_interface_that_is_not_here_and_name_those_that_are)
+{
+    Settings settings;
+    settings.interface = "nosuch0";
+    EXPECT_THAT(problems(settings), ElementsAre(testing::AllOf(HasSubstr("nosuch0"), HasSubstr("lo"))));
+}
+
+TEST(BusSettings, take_an_interface_by_its_subnet)
+{
+    Settings settings;
+    settings.interface = "127.0.0.0";
+    EXPECT_THAT(problems(settings), IsEmpty());
+}
+
+TEST(BusSettings, refuse_peers_that_are_names)
+{
+    Settings settings;
+    settings.peers = {"10.0.0.1", "lane-a"};
+    EXPECT_THAT(problems(settings), ElementsAre(HasSubstr("lane-a")));
+}
+
+TEST(BusSettings, refuse_shared_memory_under_security)
+{
+    Settings settings;
+    settings.vendor = Vendor::fastdds;
+    settings.transport = Transport::shared_memory;
+    EXPECT_THAT(problems(settings), IsEmpty());
+    settings.security = true;
+    EXPECT_THAT(problems(settings), ElementsAre(HasSubstr("plain text")));
+}
+
+TEST(BusSettings, refuse_a_transport_of_the_other_vendor)
+{
+    Settings settings;
+    settings.vendor = Vendor::cyclonedds;
+    settings.transport = Transport::shared_memory;
+    EXPECT_THAT(problems(settings), ElementsAre(HasSubstr("iceoryx")));
+}
+
+TEST(BusSettings, report_every_problem_at_once)
+{
+    Settings settings;
+    settings.domain = 999;
+    settings.interface = "nosuch0";
+    settings.peers = {"lane-a"};
+    EXPECT_EQ(problems(settings).size(), 3U);
+}
+
+}  // namespace
+
+}  // namespace quorient::bus
