@@ -34,7 +34,8 @@ ParitySpace::ParitySpace(const Axes& axes, AxisMask used) : used_(used & all_axe
 
 AxisVector ParitySpace::vector(const AxisVector& measurement) const
 {
-    AxisVector parity = AxisVector::Zero(redundancy());
+    if (used_ == all_axes(static_cast<std::size_t>(size()))) return basis_ * measurement;
+    AxisVector parity = AxisVector::Zero(redundancy());  // column by column: 0 times the NaN of an unused axis would not be 0
     for (Eigen::Index axis = 0; axis < size(); ++axis)
         if (has_axis(used_, static_cast<std::size_t>(axis))) parity += basis_.col(axis) * measurement(axis);
     return parity;

@@ -255,6 +255,15 @@ TEST(ParityMatrix, is_triangular_orthonormal_and_blind_to_motion_also_where_pivo
     for (const char* name : {"triads-2", "triads-8", "cone-7", "cone-24", "two-triads:0,0,1,90"}) expect_potter_form(name);
 }
 
+TEST(ParityMatrix, skips_the_zero_pivots_of_axes_that_the_others_cannot_predict)
+{
+    Axes axes(5, 3);
+    axes << 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1;
+    AxisMatrix expected(2, 5);
+    expected << 0, 1, -1, 0, 0, 0, 0, 0, 1, 1;
+    EXPECT_LT((parity_matrix(ParitySpace(axes)) - expected / std::sqrt(2.0)).norm(), 1e-14);
+}
+
 /// V2 as printed, save the last entry of row 1: + .31623 (printed -, which does not annihilate H). V1 is printed with these numbers too.
 TEST(ParityMatrix, of_h2_is_the_printed_one_with_one_sign_corrected)
 {

@@ -1,6 +1,7 @@
 #include "quorient/geometry/triads.hpp"
 
 #include "quorient/geometry/layouts.hpp"
+#include "quorient/geometry/redundancy.hpp"
 
 #include <gtest/gtest.h>
 #include <cmath>
@@ -107,6 +108,12 @@ TEST(Triads, leave_out_axes_in_one_plane)
     EXPECT_EQ(triads(layout("triads-8")->axes).size(), 512U);
     EXPECT_FALSE(triad_inverse(layout("triads-2")->axes, {0, 1, 3}));
     EXPECT_TRUE(triad_inverse(layout("triads-2")->axes, {0, 1, 5}));
+
+    Axes nearly(3, 3);
+    for (const double angle_rad : {1e-7, 1e-5}) {
+        nearly << 1, 0, 0, 0, 1, 0, std::cos(angle_rad), 0, std::sin(angle_rad);
+        EXPECT_EQ(triad_inverse(nearly, {0, 1, 2}).has_value(), angle_rad > coplanar_tolerance);
+    }
 }
 
 TEST(Triads, of_the_axes_in_use_leave_out_the_others)
@@ -124,8 +131,8 @@ TEST(Triads, state_their_condition)
 
     Axes nearly_flat(3, 3);
     nearly_flat << 1, 0, 0, 0, 1, 0, std::cos(1e-3), 0, std::sin(1e-3);
-    const double singular = 2e3 / r2 / r2;  // two axes 1e-3 apart: sqrt(1 + cos) / sqrt(1 - cos) = 2 / 1e-3
-    EXPECT_NEAR(triad_inverse(nearly_flat, {0, 1, 2})->condition, 2 * singular, 1e-2);
+    // singular values of two unit vectors at angle a: sqrt(1 + cos a), sqrt(1 - cos a)
+    EXPECT_NEAR(triad_inverse(nearly_flat, {0, 1, 2})->condition, std::sqrt((1 + std::cos(1e-3)) / (1 - std::cos(1e-3))), 1e-5);
 }
 
 }  // namespace
