@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+"""Checks the direction of imports from the include lines: a room uses only the rooms it may.
+
+usage: check_imports.py ROOT [--figure]      exit 1 and one line per violation
+"""
+import pathlib
+import re
+import sys
+
+# Room -> rooms whose headers it may include. `services` may use every room.
+ALLOWED = {
+    "messages": set(),
+    "geometry": {"messages"},
+    "fdi": {"geometry", "messages"},
+    "attitude": {"geometry", "messages"},
+    "voting": {"messages"},
+    "simulation": {"geometry", "messages"},
+    "recording": {"messages"},
+    "calibration": {"geometry", "messages"},
+    "bus": {"messages"},
+    "runtime": {"bus", "messages"},
+    "system": {"attitude", "bus", "fdi", "geometry", "messages", "runtime", "simulation", "voting"},
+}
+EIGEN = {"geometry", "fdi", "attitude", "voting", "simulation", "calibration", "system"}
+# What the algorithm rooms must not know: clocks, threads, files, loggers.
+PURE = {"geometry", "fdi", "attitude", "voting"}
+IMPURE_HEADERS = re.compile(r"<(thread|mutex|condition_variable|future|chrono|fstream|filesystem|atomic|spdlog/.*)>")
+VENDOR = {
+    "fastdds": re.compile(r"<(fastdds|fastrtps|fastcdr)/"),
+    "cyclonedds": re.compile(r"<dds/"),
+    "iceoryx": re.compile(r"<iceoryx"),
+}
+INCLUDE = re.compile(r'^\s*#\s*include\s+([<"][^>"]+[>"])')
+
+
+def includes(path):
+    for number, line in enumerate(path.read_text(errors="replace").splitlines(), 1):
+        found = INCLUDE.match(line)
+        if found:
+            yield number, found.group(1)
+
+
+def problems(root):
+    for path in sorted((root / "common").rglob("*.?pp")) + sorted((root / "services").rglob("*.?pp")):
+        parts = path.relative_to(root).parts
+        room = parts[1] if parts[0] == "common" else None
+        test = "test" in parts or "bench" in parts
+        for number, include in includes(path):
+            where = f"{path.relative_to(root)}:{number}"
+            used = re.match(r'"quorient/(\w+)/', include)
+            if room and used and used.group(1) not in ALLOWED.get(room, set()) | {room} and not test:
+                yield f"{where}: {room} must not import {used.group(1)}"
+            if room and room not in EIGEN and include.startswith("<Eigen/") and not test:
+                yield f"{where}: {room} must not see Eigen"
+            if room in PURE and IMPURE_HEADERS.match(include) and not test:
+                yield f"{where}: {room} must know no clock, thread, file or logger ({include})"
+            for vendor, pattern in VENDOR.items():
+                if pattern.match(include) and f"bus/{vendor}/" not in str(path.relative_to(root)):
+                    yield f"{where}: {vendor}'s headers stay in common/bus/{vendor}"
+        if room and room not in ALLOWED:
+            yield f"{path.relative_to(root)}: room {room} has no stated direction; add it to {pathlib.Path(__file__).name}"
+
+
+def figure(root):
+    """Who really imports whom."""
+    edges = {}
+    for path in (root / "common").rglob("*.?pp"):
+        room = path.relative_to(root).parts[1]
+        if "test" in path.parts or "bench" in path.parts:
+            continue
+        for _, include in includes(path):
+            used = re.match(r'"quorient/(\w+)/', include)
+            if used and used.group(1) != room:
+                edges.setdefault(room, set()).add(used.group(1))
+    for room in ALLOWED:
+        print(f"{room:<12} -> {', '.join(sorted(edges.get(room, set()))) or '(nothing)'}")
+
+
+def main():
+    root = pathlib.Path(sys.argv[1])
+    if "--figure" in sys.argv:
+        figure(root)
+        return 0
+    found = list(problems(root))
+    print("\n".join(found))
+    print(f"{len(found)} violations")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

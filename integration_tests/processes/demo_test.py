@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+"""The demos as a user starts them, and their twins without the fault."""
+import unittest
+
+from harness import CONFIGURATIONS, DATA, ProcessTest
+
+RECORDING = DATA / "mimu4444_carlsson/exp_1/data.bin"
+
+
+class DefaultDemo(ProcessTest):
+    def test_isolates_axis_1_in_every_lane_and_keeps_the_attitude(self):
+        code, summary, stderr = self.launch(CONFIGURATIONS / "demo.yaml")
+        self.assertEqual(code, 0, f"{summary}\n{stderr}")
+        self.assertEqual(summary["fault"]["axes"], [1])
+        for name, lane in summary["lanes"].items():
+            self.assertEqual(lane["isolated"], [1], name)
+            self.assertLessEqual(lane["frames_to_isolation"], 3, name)
+            self.assertEqual(lane["working"], [0, 2, 3], name)
+        self.assertEqual({lane["vendor"] for lane in summary["lanes"].values()}, {"fastdds", "cyclonedds"})
+        self.assertEqual(summary["voted"]["missing"], 0)
+        self.assertEqual(summary["voted"]["disordered"], 0)
+        self.assertGreater(summary["voted"]["attitude"]["compared"], 3900)
+        self.assertLess(summary["voted"]["attitude"]["final_error_rad"], 3e-6)
+        # The fault is really there: without roll-back it leaves its trace.
+        self.assertGreater(summary["without_rollback"]["final_error_rad"], 1e-4)
+
+    def test_isolates_nothing_without_the_fault(self):
+        code, summary, stderr = self.launch(
+            CONFIGURATIONS / "demo.yaml", "--set", "source.faults=[]", "--set", "source.duration_s=8", "--set", "expect={isolated: [], no_gap: true}"
+        )
+        self.assertEqual(code, 0, f"{summary}\n{stderr}")
+        self.assertIsNone(summary["fault"])
+        for name, lane in summary["lanes"].items():
+            self.assertEqual(lane["isolated"], [], name)
+        self.assertLess(summary["voted"]["attitude"]["max_error_rad"], 3e-6)
+
+    def test_fails_when_the_expected_axis_is_another(self):
+        code, summary, stderr = self.launch(
+            CONFIGURATIONS / "demo.yaml",
+            "--set", "source.duration_s=4",
+            "--set", "source.faults=['axis=2,kind=scale,value=0.8,start=1']",
+        )
+        self.assertEqual(code, 1)
+        self.assertTrue(summary["unmet"])
+        self.assertIn("not as expected", stderr)
+
+
+@unittest.skipUnless(RECORDING.exists(), f"no recording at {RECORDING}")
+class RecordingDemo(ProcessTest):
+    def test_names_imu3_in_every_lane(self):
+        code, summary, stderr = self.launch(CONFIGURATIONS / "mimu4444.yaml", "--log", RECORDING, "--speed", 2)
+        self.assertEqual(code, 0, f"{summary}\n{stderr}")
+        for name, lane in summary["lanes"].items():
+            self.assertEqual(lane["isolated"], [6, 7, 8], name)
+        self.assertEqual(summary["voted"]["missing"], 0)
+
+    def test_names_nobody_without_the_added_fault(self):
+        code, summary, stderr = self.launch(
+            CONFIGURATIONS / "mimu4444.yaml", "--log", RECORDING, "--speed", 4, "--set", "source.faults=[]", "--set", "expect={isolated: [], no_gap: true}"
+        )
+        self.assertEqual(code, 0, f"{summary}\n{stderr}")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -1,0 +1,69 @@
+"""What process tests share: programs, domains, hard time-outs. No sleep stands for synchronisation anywhere."""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import time
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+BIN = pathlib.Path(os.environ.get("QUORIENT_BIN", ROOT / "build/release/bin"))
+SHARED = pathlib.Path(os.environ.get("QUORIENT_SHARED_DIR", ROOT.parent / "shared"))
+DATA = pathlib.Path(os.environ.get("QUORIENT_DATA_DIR", SHARED / "data"))
+CONFIGURATIONS = ROOT / "deploy/configurations"
+
+
+class ProcessTest(unittest.TestCase):
+    """A run directory and a DDS domain of its own; every process it starts is ended by its id."""
+
+    next_domain = 1
+
+    def setUp(self):
+        self.run_directory = pathlib.Path(tempfile.mkdtemp(prefix="quorient-test-"))
+        ProcessTest.next_domain += 1
+        self.domain = 120 + (os.getpid() * 7 + ProcessTest.next_domain) % 100
+        self.environment = dict(os.environ, QUORIENT_RUN_DIR=str(self.run_directory))
+        self.processes = []
+
+    def tearDown(self):
+        for process in self.processes:
+            if process.poll() is None:
+                process.kill()
+            process.communicate()
+        shutil.rmtree(self.run_directory, ignore_errors=True)
+
+    def command(self, program, *arguments):
+        return [str(BIN / program), *map(str, arguments)]
+
+    def run_program(self, program, *arguments, timeout=60):
+        """Runs to its end. A program that hangs fails the test."""
+        return subprocess.run(
+            self.command(program, *arguments), env=self.environment, capture_output=True, text=True, timeout=timeout
+        )
+
+    def start(self, program, *arguments):
+        process = subprocess.Popen(
+            self.command(program, *arguments), env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        )
+        self.processes.append(process)
+        return process
+
+    def launch(self, configuration, *arguments, timeout=90):
+        """quorient launch --json. @returns its exit code and the summary."""
+        result = self.run_program("quorient", "launch", configuration, "--domain", self.domain, "--json", *arguments, timeout=timeout)
+        self.assertIn(result.returncode, (0, 1), result.stdout + result.stderr)
+        return result.returncode, json.loads(result.stdout), result.stderr
+
+    def eventually(self, condition, what, timeout=20):
+        """Polls until the condition holds; a hard time-out, not a wait."""
+        deadline = time.monotonic() + timeout
+        while not condition():
+            self.assertLess(time.monotonic(), deadline, f"not within {timeout} s: {what}")
+            time.sleep(0.02)
+
+    def write(self, name, text):
+        path = self.run_directory / name
+        path.write_text(text)
+        return path

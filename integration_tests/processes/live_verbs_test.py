@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+"""The verbs that look at a running system and give it orders."""
+import json
+import shutil
+import signal
+import subprocess
+import unittest
+
+from harness import CONFIGURATIONS, ProcessTest
+
+
+class LiveVerbs(ProcessTest):
+    def setUp(self):
+        super().setUp()
+        self.pipeline = self.start(
+            "quorient", "launch", CONFIGURATIONS / "demo.yaml", "--domain", self.domain, "--json",
+            "--set", "source.duration_s=120", "--set", "source.faults=[]", "--set", "expect=null",
+        )
+        self.eventually(lambda: self.run_program("quorient", "health", "voter-1").returncode == 0, "the pipeline runs")
+
+    def echo(self, topic, count, *arguments):
+        result = self.run_program("quorient", "echo", topic, "--count", count, "--json", "--timeout", 10, "--domain", self.domain, *arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return [json.loads(line) for line in result.stdout.splitlines()]
+
+    def test_echo_shows_the_voted_stream_with_either_vendor(self):
+        for vendor in ("cyclonedds", "fastdds"):
+            samples = self.echo("voter_output", 20, "--dds", vendor)
+            by_voter = {}
+            for sample in samples:
+                self.assertGreater(sample["output_sequence"], by_voter.get(sample["voter"], 0))
+                by_voter[sample["voter"]] = sample["output_sequence"]
+                self.assertAlmostEqual(sum(component**2 for component in sample["attitude"]), 1, places=12)
+
+    def test_echo_of_the_owned_topic_comes_from_the_strongest_voter(self):
+        self.assertEqual({sample["voter"] for sample in self.echo("voted", 70)[-5:]}, {1})
+
+    def test_inject_breaks_an_axis_and_readmit_trusts_it_again(self):
+        injected = self.run_program("quorient", "inject", "axis=2,kind=bias,value=0.05,start=0,end=0.5", "--domain", self.domain)
+        self.assertEqual(injected.returncode, 0, injected.stdout + injected.stderr)
+        self.eventually(lambda: self.echo("verdict", 1)[0]["isolated_mask"] == 0b100, "axis 2 isolated")
+        readmitted = self.run_program("quorient", "readmit", "--axis", 2, "--domain", self.domain)
+        self.assertEqual(readmitted.returncode, 0, readmitted.stdout + readmitted.stderr)
+        self.eventually(lambda: self.echo("voter_output", 1)[0]["isolated_mask"] == 0, "axis 2 trusted again")
+
+    def test_readmit_of_a_healthy_axis_is_refused(self):
+        self.assertEqual(self.run_program("quorient", "readmit", "--axis", 0, "--domain", self.domain).returncode, 1)
+
+    def test_status_names_every_service_and_its_transport(self):
+        result = self.run_program("quorient", "status", "--domain", self.domain, "--json")
+        services = {service["name"]: service for service in json.loads(result.stdout)["services"]}
+        self.assertEqual(
+            set(services), {"sensor", "voter-1", "voter-2"} | {f"{role}-{lane}" for role in ("fdi", "attitude") for lane in "abc"}
+        )
+
+    def test_sigterm_ends_everything_in_order_within_two_seconds(self):
+        self.pipeline.send_signal(signal.SIGTERM)
+        self.pipeline.wait(timeout=5)
+        self.assertEqual(self.pipeline.returncode, 0)
+        self.assertNotEqual(self.run_program("quorient", "health", "voter-1", "--fresh", 0.001).returncode, 0)
+
+    @unittest.skipUnless(shutil.which("tshark"), "tshark is not installed")
+    def test_tshark_names_topics_and_types(self):
+        tshark = subprocess.Popen(
+            ["tshark", "-i", "lo", "-a", "duration:8", "-f", "udp", "-Y", "rtps", "-V"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+        self.processes.append(tshark)
+        self.echo("voter_output", 5)  # discovery speaks the names to whoever joins
+        output, errors = tshark.communicate(timeout=60)
+        if "permission" in errors.lower():
+            self.skipTest("capturing on loopback is not permitted")
+        for name in ("quorient/voter_output", "quorient_msgs::VoterOutput", "quorient/frame", "quorient_msgs::SensorFrame"):
+            self.assertIn(name, output)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
