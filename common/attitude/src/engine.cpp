@@ -24,6 +24,7 @@ Integrator::Engine::Engine(const IntegratorSettings& settings, std::unique_ptr<c
     anchor_.attitude = from_array(settings.initial_attitude).normalized();
     anchor_.variance = settings.initial_sigma_rad * settings.initial_sigma_rad;
     public_ = anchor_;
+    announced_ = public_.attitude;
 }
 
 void Integrator::Engine::apply(const FaultVerdict& verdict)
@@ -131,7 +132,7 @@ bool Integrator::Engine::work()
     if (caught_up()) return false;
     for (std::size_t done = 0; done < slice && !caught_up(); ++done) {
         integrate(cursor_++);
-        ++rolled_back_frames_;
+        ++integrated_again_;
     }
     if (caught_up()) finish_correction();
     return !caught_up();
@@ -139,14 +140,23 @@ bool Integrator::Engine::work()
 
 void Integrator::Engine::finish_correction()
 {
-    const Standing& corrected = before(history_.size());
+    public_ = before(history_.size());
+    const Quaternion& corrected = before(history_.size() - unpublished_).attitude;
     if (catching_up_) {
         catching_up_ = history_.empty();
-    } else if (initialised_ && corrected.attitude.coeffs() != public_.attitude.coeffs()) {
+    } else if (initialised_ && corrected.coeffs() != announced_.coeffs()) {
         ++reset_counter_;
-        reset_rotation_ = renormalised(corrected.attitude * public_.attitude.conjugate());
+        reset_rotation_ = renormalised(corrected * announced_.conjugate());
+        rolled_back_frames_ += static_cast<std::uint32_t>(integrated_again_ - std::min(integrated_again_, unpublished_));
     }
-    public_ = corrected;
+    announced_ = corrected;
+    integrated_again_ = 0;
+}
+
+void Integrator::Engine::mark_published()
+{
+    announced_ = public_.attitude;
+    unpublished_ = 0;
 }
 
 void Integrator::Engine::integrate(std::size_t index)

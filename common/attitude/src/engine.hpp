@@ -18,6 +18,7 @@ public:
     void apply(const FaultVerdict& verdict);
     bool work();
     AttitudeState state() const;
+    void mark_published();
     std::uint64_t history_too_short() const { return history_too_short_; }
     void seed(const VotedAttitude& voted);
     void reset(const Quaternion& attitude);
@@ -62,9 +63,11 @@ private:
 
     History history_;
     Trust trust_;
-    Standing anchor_;  // before the oldest record
-    Opinion carried_;  // in force before the oldest record
-    Standing public_;  // at the newest record, as announced
+    Standing anchor_;              // before the oldest record
+    Opinion carried_;              // in force before the oldest record
+    Standing public_;              // at the newest record, as announced
+    Quaternion announced_;         // of the newest frame published, as it was published
+    std::size_t unpublished_ = 0;  // records newer than that
     std::size_t cursor_ = 0;
     std::array<Sample, longest_memory> window_{};  // up to the record before window_end_
     std::size_t window_size_ = 0;
@@ -96,6 +99,7 @@ private:
     std::uint32_t reset_counter_ = 0;
     Quaternion reset_rotation_ = Quaternion::Identity();
     std::uint32_t rolled_back_frames_ = 0;
+    std::size_t integrated_again_ = 0;  // since the pending roll-back began
 };
 
 }  // namespace quorient::attitude

@@ -1,5 +1,6 @@
 #include "engine.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace quorient::attitude {
@@ -28,6 +29,7 @@ void Integrator::Engine::add(const SensorFrame& frame)
     if (epoch_known_ && Identity{frame.epoch, frame.sequence} < Identity{epoch_, next_sequence_}) return;
     if (!epoch_known_ || frame.epoch != epoch_) enter_epoch(frame.epoch);
     if (caught_up()) rolled_back_frames_ = 0;
+    mark_published();
 
     const std::uint64_t lost = frame.sequence - next_sequence_;
     bridged_ = lost > 0;
@@ -81,6 +83,7 @@ void Integrator::Engine::enter_epoch(std::uint64_t epoch)
     cursor_ = window_end_ = window_size_ = 0;
     anchor_ = public_ = start;
     verdict_applied_ = {};
+    mark_published();
 }
 
 void Integrator::Engine::append_gap(const SensorFrame& frame, std::uint64_t lost)
@@ -132,6 +135,7 @@ void Integrator::Engine::integrate_appended()
     if (trust_.waiting() && exclusions_known_ && settings_.rollback) trust_.fold(history_);
     else record.excluded = trust_.excluded_at(record.last_sequence);
     judge_record(record);
+    ++unpublished_;
 
     if (cursor_ == index) {
         integrate(index);
@@ -172,6 +176,8 @@ void Integrator::Engine::close_history(const Standing& standing)
     history_dropped_ = false;
     cursor_ = window_end_ = window_size_ = 0;
     anchor_ = public_ = standing;
+    integrated_again_ = 0;
+    mark_published();
 }
 
 void Integrator::Engine::reset(const Quaternion& attitude)
@@ -239,6 +245,8 @@ void Integrator::Engine::connect_seed()
     history_dropped_ = false;
     cursor_ = window_end_ = window_size_ = 0;
     public_ = history_.empty() ? anchor_ : history_.newest().standing;
+    integrated_again_ = 0;
+    unpublished_ = std::min(unpublished_, history_.size());
     reset_counter_ = voted.reset_counter;
     reset_rotation_ = from_array(voted.reset_rotation);
     seed_waits_ = false;

@@ -60,6 +60,11 @@ AttitudeState Integrator::state() const
 {
     return engine_->state();
 }
+AttitudeState Integrator::publish()
+{
+    engine_->mark_published();
+    return engine_->state();
+}
 std::uint64_t Integrator::history_too_short() const
 {
     return engine_->history_too_short();

@@ -43,25 +43,19 @@ private:
     Wide angular_rate_;
 };
 
-/// Paper 003's motion (eqs 46-48, the factor of 48 corrected): omega_B = (k3, k2 cos k3 t, -k2 sin k3 t), and the attitude that
-/// it leads to from `initial` in closed form: in a frame that turns with the rate -k3 about x, the rate is constant.
+/// Paper 003's motion (eqs 46-48, the factor of 48 corrected): omega_B = (k3, k2 cos k3 t, -k2 sin k3 t).
 class PaperMotion {
 public:
     PaperMotion(double k2, double k3) : k2_(k2), k3_(k3) {}
 
-    /// q(t) for q(0) = 1:  exp((2 k3, k2, 0) t / 2) o exp(-(k3, 0, 0) t / 2), both as half-angle quaternions.
+    /// q(t) for q(0) = 1: a turn about a fixed y by k2 t, then one about the body's x by k3 t.
     Quaternion attitude(Wide time_s) const
     {
-        const Wide x = 2 * k3_;
-        const Wide norm = std::sqrt(x * x + k2_ * k2_);
-        const Wide half = norm * time_s / 2;
-        const Wide w = std::cos(half);
-        const Wide a = std::sin(half) * x / norm;
-        const Wide b = std::sin(half) * k2_ / norm;
-        const Wide c = std::cos(k3_ * time_s / 2);
-        const Wide s = -std::sin(k3_ * time_s / 2);
-        return {static_cast<double>(w * c - a * s), static_cast<double>(w * s + a * c), static_cast<double>(b * c),
-                static_cast<double>(-b * s)};
+        const Wide cy = std::cos(k2_ * time_s / 2);
+        const Wide sy = std::sin(k2_ * time_s / 2);
+        const Wide cx = std::cos(k3_ * time_s / 2);
+        const Wide sx = std::sin(k3_ * time_s / 2);
+        return {static_cast<double>(cy * cx), static_cast<double>(cy * sx), static_cast<double>(sy * cx), static_cast<double>(-sy * sx)};
     }
 
     Eigen::Vector3d increment(Wide begin_s, Wide interval_s) const

@@ -57,9 +57,14 @@ public:
     /// One bounded slice (at most 128 frames) of a pending roll-back. @returns true while more is left.
     bool work();
 
-    /// The attitude of the newest frame. While a roll-back is pending it is still the old one; the correction appears as a
-    /// whole, with reset_counter + 1, on the first frame added after the roll-back has caught up.
+    /// The attitude of the newest frame. While a roll-back is pending it follows the old track; then the correction appears as
+    /// a whole, with reset_counter + 1 if an attitude that was published has changed, and with
+    /// reset_rotation = q_new o conj(q_old) at the newest frame that was published.
     AttitudeState state() const;
+
+    /// state(), and from now on the newest frame counts as published: what changes it later is a reset. (Adding the next frame
+    /// has the same effect.) Between add() and publish() a verdict on the newest frame changes its attitude without a reset.
+    AttitudeState publish();
 
     /// A lane's verdict reached further back than the history: its correction is incomplete. Counts such verdicts.
     std::uint64_t history_too_short() const;
