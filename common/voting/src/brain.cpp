@@ -96,8 +96,7 @@ void Voter::Brain::notice(std::int64_t now_ns)
     } else if (*now_ > promised_ns_ + interval_ns_ / 2) {
         drained_ns_ = *now_ + interval_ns_ / 2;
         if (away_ns <= lease_ns_ / 2 || !ranking_.has_others()) return;
-        ranking_.take_care_until(*now_ + lease_ns_);  // another voter may just have taken over
-        synchronised_ns_ = std::max(synchronised_ns_.value_or(0), drained_ns_);
+        synchronised_ns_ = std::max(synchronised_ns_.value_or(0), drained_ns_);  // another voter may just have taken over
     }
 }
 
@@ -392,7 +391,7 @@ void Voter::Brain::emit(const VotedAttitude& attitude, bool repeated)
 {
     Output& output = outputs_.push();
     output.attitude = attitude;
-    output.to_owned = ranking_.may_write({identity_of(attitude), attitude.output_sequence}, repeated, *now_);
+    output.to_owned = ranking_.may_write({identity_of(attitude), attitude.output_sequence}, repeated);
     ++counters_.published;
 }
 

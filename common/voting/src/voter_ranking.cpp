@@ -101,7 +101,7 @@ std::uint64_t VoterRanking::next_output_sequence(Identity identity) const
     return next;
 }
 
-bool VoterRanking::may_write(Position position, bool repeated, std::int64_t now_ns)
+bool VoterRanking::may_write(Position position, bool repeated)
 {
     own_sequence_ = position.output_sequence;
     if (!established()) {
@@ -109,7 +109,6 @@ bool VoterRanking::may_write(Position position, bool repeated, std::int64_t now_
         written_ = std::max(written_, highest_seen_);
         return false;
     }
-    if (now_ns < careful_until_ns_) written_ = std::max(written_, highest_seen_);
     for (const Other& other : others_) {
         if (other.stronger && other.heard) written_ = std::max(written_, other.newest);
     }

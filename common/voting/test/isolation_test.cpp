@@ -133,6 +133,28 @@ TEST(Isolation, that_came_first_and_rightly_is_never_expelled_by_two_late_ones)
     }
 }
 
+TEST(Isolation, keeps_the_corrected_primary_while_the_others_have_yet_to_correct_themselves)
+{
+    Scene scene;
+    Fault fault;
+    fault.suspected = {50, 51, 51};
+    fault.isolated = {52, 53, 53};
+    for (std::uint64_t sequence = 0; sequence < 100; ++sequence) {
+        for (std::size_t lane = 0; lane < 3; ++lane) {
+            AttitudeState sample = fault.sample(lane, sequence);
+            const bool rolling_back = lane != 0 && sequence >= 53 && sequence < 59;
+            scene.at(Scene::time_of(sequence), fault.verdict(lane, sequence));
+            scene.at(Scene::time_of(sequence), rolling_back ? moved(sample, 3e-3) : sample);
+        }
+    }
+    for (const Output& output : scene.outputs) {
+        if (output.attitude.sequence < 52) continue;
+        EXPECT_EQ(output.attitude.attitude, truth(output.attitude.sequence)) << "frame " << output.attitude.sequence;
+    }
+    EXPECT_EQ(changes(scene), 0U);
+    EXPECT_EQ(scene.last().excluded_mask, 0U);
+}
+
 TEST(Isolation, of_a_majority_outvotes_the_lane_that_keeps_the_axis)
 {
     Scene scene;

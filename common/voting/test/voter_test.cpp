@@ -101,6 +101,15 @@ TEST(Voter, of_one_lane_is_a_valid_system)
     for (const VoterEvent& event : scene.events) EXPECT_LE(event.severity, Severity::warning_low);
 }
 
+TEST(Voter, names_the_lanes_that_vouch_though_their_votes_of_this_frame_are_on_the_way)
+{
+    Scene scene;
+    scene.frames(0, 49);
+    EXPECT_EQ(scene.last().vouching_mask, 0b111U);
+    scene.frames(50, 99, all_but(2));
+    EXPECT_EQ(scene.last().vouching_mask, 0b011U);
+}
+
 TEST(Voter, keeps_its_primary_while_another_lane_is_quicker)
 {
     Scene scene;

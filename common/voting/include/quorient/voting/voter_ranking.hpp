@@ -22,8 +22,8 @@ struct Position {
 /// What the other voters of the unit publish, whom this one follows, and what it may write to `voted`.
 ///
 /// A voter follows the strongest fresh voter among those stronger than itself. It writes `voted` only after a number of good frames, and
-/// never steps back: nothing at or below what a stronger voter has published, nor, when it begins to write or comes out of
-/// a delay, below what any voter has published.
+/// never steps back: nothing at or below what a stronger voter has published, nor, when it begins to write, what any
+/// voter has published.
 class VoterRanking {
 public:
     explicit VoterRanking(const VoterSettings& settings);
@@ -48,13 +48,10 @@ public:
     std::uint64_t next_output_sequence(Identity identity) const;
 
     /// To be asked once for every output, in order.
-    bool may_write(Position position, bool repeated, std::int64_t now_ns);
+    bool may_write(Position position, bool repeated);
 
     /// The voter was away, or has just started.
     void start_over();
-
-    /// For a while nothing is written that any voter has published already.
-    void take_care_until(std::int64_t time_ns) { careful_until_ns_ = time_ns; }
 
     bool established() const { return good_frames_ >= good_frames_required_; }
 
@@ -84,7 +81,6 @@ private:
     std::vector<Other> others_;  ///< strongest first
     std::int64_t lease_ns_;
     std::int64_t coasting_interval_ns_;
-    std::int64_t careful_until_ns_ = 0;
     unsigned good_frames_required_;
     unsigned good_frames_ = 0;
     std::uint64_t own_sequence_ = 0;
