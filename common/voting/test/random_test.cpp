@@ -1,7 +1,7 @@
 // Rule-based random tests: a world of lanes, detectors and voters is driven by random events; rules that must hold whatever happens are
 // checked at every output. A sequence that breaks one is shrunk and printed.
 //
-// QUORIENT_RANDOM_SEQUENCES sets how many sequences are tried in all (default 10000), QUORIENT_RANDOM_SEED the first seed.
+// QUORIENT_RANDOM_SEQUENCES sets how many sequences are tried in all (default 5000), QUORIENT_RANDOM_SEED the first seed.
 #include "scene.hpp"
 
 #include <gtest/gtest.h>
@@ -562,7 +562,7 @@ std::uint64_t number(const char* name, std::uint64_t otherwise)
 void hold(const Generator& generate, const Rule& rule)
 {
     const std::uint64_t first = number("QUORIENT_RANDOM_SEED", 1);
-    const std::uint64_t sequences = number("QUORIENT_RANDOM_SEQUENCES", 10000) / 5;
+    const std::uint64_t sequences = number("QUORIENT_RANDOM_SEQUENCES", 5000) / 5;
     for (std::uint64_t seed = first; seed < first + sequences; ++seed) {
         Random random(seed * 2654435761U);
         const Events events = generate(random);
