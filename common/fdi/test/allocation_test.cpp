@@ -1,0 +1,113 @@
+// No method may touch the heap per frame: every operator new of this program is counted.
+
+#include "quorient/fdi/make_detector.hpp"
+#include "test_clusters.hpp"
+
+#include <gtest/gtest.h>
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+namespace {
+
+std::atomic<std::size_t> allocations{0};
+
+void* counted(std::size_t size, std::size_t alignment)
+{
+    ++allocations;
+    if (void* memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)) return memory;
+    throw std::bad_alloc();
+}
+
+}  // namespace
+
+void* operator new(std::size_t size)
+{
+    return counted(size, alignof(std::max_align_t));
+}
+void* operator new(std::size_t size, std::align_val_t alignment)
+{
+    return counted(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept
+{
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept
+{
+    std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept
+{
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept
+{
+    std::free(memory);
+}
+
+namespace quorient::fdi {
+namespace {
+
+struct Case {
+    const char* method;
+    const char* layout;
+};
+
+/// Healthy frames, one and two faults, a change of axes and back: every path that a frame can take.
+std::size_t allocations_while_assessing(Detector& detector, const geometry::SensorCluster& cluster)
+{
+    std::vector<std::vector<double>> frames{measure(cluster, {1, 2, 3}), measure(cluster, {1, 2, 3}, {{1, 200}}),
+                                            measure(cluster, {1, 2, 3}, {{0, 70}, {2, -300}})};
+    Assessment assessment;
+    std::uint64_t sequence = 0;
+    const std::size_t before = allocations;
+    for (int repetition = 0; repetition < 20; ++repetition)
+        for (const auto& z : frames)
+            for (const AxisMask valid : {cluster.all(), cluster.all() & ~axis_bit(3), cluster.all()})
+                detector.assess({.identity = {1, sequence++}, .interval_s = 0.01, .increment = z, .valid = valid}, assessment);
+    detector.exclude(axis_bit(1));
+    detector.assess({.identity = {1, sequence++}, .interval_s = 0.01, .increment = frames[1], .valid = cluster.all()}, assessment);
+    detector.exclude(0);
+    return allocations - before;
+}
+
+TEST(Allocation, is_counted_at_all)
+{
+    const std::size_t before = allocations;
+    delete new double(1);
+    const geometry::Axes on_the_stack = cluster_named("cone-4").axes;
+    EXPECT_GT(allocations, before);
+    EXPECT_EQ(on_the_stack.rows(), 4);
+}
+
+TEST(Allocation, does_not_happen_per_frame_in_any_method)
+{
+    for (const Case& tried :
+         {Case{"guaranteed", "dodecahedron"}, Case{"guaranteed", "octahedron-8"}, Case{"invariants", "dodecahedron"},
+          Case{"invariants", "triads-8"}, Case{"voting", "dodecahedron"}, Case{"voting", "octahedron-8"}, Case{"mean", "dodecahedron"},
+          Case{"mean", "triads-8"}, Case{"glt", "dodecahedron"}, Case{"glt", "triads-8"}, Case{"parity-set", "octahedron-8"},
+          Case{"subset", "dodecahedron"}, Case{"subset", "triads-8"}, Case{"extrapolation", "cone-4"}, Case{"vector", "cone-4"}}) {
+        DetectorSettings settings;
+        settings.method = tried.method;
+        settings.sigma = 1;
+        settings.bound = 4;
+        const auto cluster = cluster_named(tried.layout);
+        const auto detector = make_detector(settings, cluster).value();
+        EXPECT_EQ(allocations_while_assessing(*detector, cluster), 0U) << tried.method << " on " << tried.layout;
+    }
+}
+
+TEST(Allocation, does_not_happen_per_frame_for_instruments)
+{
+    DetectorSettings settings;
+    settings.method = "subset";
+    settings.sigma = 1;
+    settings.instruments = true;
+    const auto cluster = cluster_named("triads-8");
+    const auto detector = make_detector(settings, cluster).value();
+    EXPECT_EQ(allocations_while_assessing(*detector, cluster), 0U);
+}
+
+}  // namespace
+}  // namespace quorient::fdi
