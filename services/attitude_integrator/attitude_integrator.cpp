@@ -130,7 +130,7 @@ void AttitudeIntegrator::publish_pending()
     if (!pending_) return;
     pending_.reset();
     patience_timer_.cancel();
-    auto attitude = integrator_->state();
+    auto attitude = integrator_->publish();
     attitude.stamp_ns = stamps_;
     attitude.stamp_ns[static_cast<std::size_t>(Hop::integrator_out)] = node_.stamp();
     if (attitudes_.publish(attitude)) ++node_.status().published;

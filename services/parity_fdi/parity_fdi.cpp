@@ -92,6 +92,7 @@ void ParityFdi::assess(const SensorFrame& frame)
     if (verdicts_.publish(verdict)) ++node_.status().published;
     node_.handled(identity_of(frame), arrival_ns_);
     node_.set_state(ServiceState::running);
+    if (verdict.state != static_cast<std::uint8_t>(VerdictState::warming_up)) adopting_ = false;
     tell_changes(verdict);
     last_ = verdict;
 }
@@ -142,13 +143,12 @@ void ParityFdi::on_lane_attitude(const AttitudeState& attitude)
 {
     if (attitude.unit != settings_.process.node.unit || attitude.lane != settings_.lane || attitude.isolated_mask == 0) return;
     lane_memory_ = attitude;
-    const bool warming_up = last_.state == static_cast<std::uint8_t>(VerdictState::warming_up) || last_.state == 0;
-    if (monitor_ && warming_up) adopt_from_lane();
+    if (monitor_) adopt_from_lane();
 }
 
 void ParityFdi::adopt_from_lane()
 {
-    if (!lane_memory_) return;
+    if (!lane_memory_ || !adopting_) return;
     auto excluded_from = lane_memory_->excluded_from;
     if (lane_memory_->epoch != intake_.description()->epoch) {
         for (auto& sequence : excluded_from) sequence = sequence == never ? never : 0;
@@ -160,6 +160,7 @@ void ParityFdi::on_command(const FaultCommand& command)
 {
     if (command.unit != settings_.process.node.unit || command.action != static_cast<std::uint8_t>(CommandAction::readmit)) return;
     const bool done = monitor_ && monitor_->readmit(command.axes);
+    adopting_ = false;  // the lane's memory is older than this order
     node_.report(done ? EventCode::command_done : EventCode::command_refused, done ? Severity::info : Severity::warning_low,
                  identity_of(last_), command.axes,
                  fmt::format("{} {}", done ? "readmits" : "has not isolated", runtime::describe_axes(command.axes)), command.request);

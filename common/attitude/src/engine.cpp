@@ -70,12 +70,19 @@ bool Integrator::Engine::hear(const Opinion& opinion, std::size_t index)
     return true;
 }
 
-// An opinion stays in force until the next frame that has its own. @returns that frame's index.
+// An opinion stays in force until the next frame that has its own, and what it knows until one that may clear it.
+// @returns the first record that this does not touch.
 std::size_t Integrator::Engine::carry_opinion(std::size_t index)
 {
-    std::size_t next = index + 1;
-    for (; next < history_.size() && !history_[next].own_opinion; ++next) history_[next].opinion = history_[index].opinion;
-    return next;
+    for (; index < history_.size(); ++index) {
+        const Opinion& before = index == 0 ? carried_ : history_[index - 1].opinion;
+        Record& record = history_[index];
+        if (record.own_opinion) record.opinion.follow(before.known);
+        else record.opinion = before;
+        const bool next_is_apart = index + 1 < history_.size() && history_[index + 1].own_opinion && history_[index + 1].opinion.clears();
+        if (next_is_apart) return index + 1;
+    }
+    return index;
 }
 
 void Integrator::Engine::refold()

@@ -80,6 +80,7 @@ void Integrator::Engine::enter_epoch(std::uint64_t epoch)
         initialised_ = true;
     }
     carried_ = Opinion{};
+    carried_.known = trust_.excluded_at(0);
     cursor_ = window_end_ = window_size_ = 0;
     anchor_ = public_ = start;
     verdict_applied_ = {};
@@ -130,7 +131,7 @@ void Integrator::Engine::integrate_appended()
     const std::size_t index = history_.size() - 1;
     Record& record = history_[index];
     record.own_opinion = trust_.take_early(record.first_sequence, record.last_sequence, record.opinion);
-    if (!record.own_opinion) record.opinion = index == 0 ? carried_ : history_[index - 1].opinion;
+    carry_opinion(index);
 
     if (trust_.waiting() && exclusions_known_ && settings_.rollback) trust_.fold(history_);
     else record.excluded = trust_.excluded_at(record.last_sequence);
@@ -239,7 +240,9 @@ void Integrator::Engine::connect_seed()
         carried_ = history_.oldest().opinion;
         history_.drop_oldest();
     }
-    trust_.hear_old(opinion_of(voted));
+    const Opinion taken_over = opinion_of(voted);
+    trust_.hear_old(taken_over);
+    carried_.known |= taken_over.excluded;
     exclusions_known_ = exclusions_known_ || voted.isolated_mask != 0;
     anchor_ = standing_of(voted);
     history_dropped_ = false;
@@ -252,6 +255,7 @@ void Integrator::Engine::connect_seed()
     seed_waits_ = false;
     seeded_ = initialised_ = catching_up_ = true;
     trust_.fold(history_);
+    carry_opinion(0);
     refresh(0, history_.size());
     if (!history_.empty()) history_[0].standing.count = 0;
 }

@@ -53,7 +53,7 @@ Judgement judge(const Opinion& opinion, AxisMask excluded, AxisMask valid, bool 
 {
     const AxisMask trusted = valid & ~excluded;
     Judgement judgement{.used = trusted};
-    const bool overruled = (excluded & ~opinion.excluded) != 0;
+    const bool overruled = (excluded & ~opinion.known) != 0;
     const auto leave_out = [&](AxisMask axes) {
         if (axes == 0 || !body.well_conditioned(trusted & ~axes)) return false;
         judgement.used = trusted & ~axes;

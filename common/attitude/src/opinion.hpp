@@ -15,6 +15,7 @@ struct Opinion {
     std::uint64_t sequence = 0;
     std::array<std::uint64_t, max_axes> excluded_from = detail::all_never();
     AxisMask excluded = 0;  ///< axes with an excluded_from
+    AxisMask known = 0;     ///< excluded as far as verdicts up to this one say; more than `excluded` where it cannot clear
     AxisMask suspects = 0;
     AxisMask candidates = 0;  ///< union of the candidate sets
     double residual = 0;      ///< largest of the finite residuals [rad]
@@ -22,6 +23,9 @@ struct Opinion {
 
     /// Whether an axis that it does not exclude is trusted again. WARMING_UP, AMBIGUOUS and BLIND never clear an exclusion.
     bool clears() const { return state == VerdictState::healthy || state == VerdictState::suspect || state == VerdictState::isolated; }
+
+    /// Sets `known`, given what was known at the frame before.
+    void follow(AxisMask known_before) { known = clears() ? excluded : excluded | known_before; }
 
     /// An order without meaning, so that of two different opinions on one frame the same one is kept whichever comes first.
     bool precedes(const Opinion& other) const;

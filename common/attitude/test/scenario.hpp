@@ -2,6 +2,7 @@
 
 #include "coning.hpp"
 #include "quorient/attitude/integrator.hpp"
+#include "quorient/attitude/body_increment.hpp"
 #include "quorient/geometry/layouts.hpp"
 
 #include <functional>

@@ -19,6 +19,8 @@ constexpr std::size_t looks_per_window = 8;
 constexpr double saturation = 0.975;
 constexpr unsigned frames_held_out = 4;
 
+constexpr double calming = 1.0 / 16;  ///< per frame, of the wildness
+
 constexpr double default_margin = 1.25;
 constexpr double default_false_alarms_per_hour = 0.1;
 
@@ -102,6 +104,7 @@ void Accumulating::reset()
     alert_ = false;
     previous_rate_.reset();
     previous_acceleration_.setZero();
+    wildness_ = 0;
 }
 
 bool Accumulating::usable(const Measurement& measurement)
@@ -130,7 +133,10 @@ void Accumulating::take_in(const Measurement& measurement)
         (acceleration * acceleration.transpose() + previous_acceleration_ * previous_acceleration_.transpose()) / 2;
 
     now.angle = before.angle + z;
+    // Where the acceleration passes through zero the errors do not: they follow how wild the motion has been lately.
+    wildness_ = std::max(acceleration.squaredNorm(), wildness_ + (acceleration.squaredNorm() - wildness_) * calming);
     now.jitter = before.jitter + h * h * spread;
+    now.wildness = before.wildness + h * h * wildness_;
     now.rate = rate;
     now.time_s = before.time_s + h;
     now.turned_rad = before.turned_rad + rate.norm() * h;
@@ -152,7 +158,7 @@ Accumulating::Finding Accumulating::examine(std::size_t window) const
     const double floor = motion_.bias_floor_rad_s * time_s + motion_.rate_error * (newest.turned_rad - oldest.turned_rad);
     const double across = motion_.jitter_across_s * motion_.jitter_across_s;
     const double along = motion_.jitter_along_s * motion_.jitter_along_s;
-    const Eigen::Matrix3d motion = (along - across) * jitter + across * jitter.trace() * Eigen::Matrix3d::Identity() +
+    const Eigen::Matrix3d motion = (along - across) * jitter + across * (newest.wildness - oldest.wildness) * Eigen::Matrix3d::Identity() +
                                    motion_.lag_s * motion_.lag_s * change * change.transpose();
 
     // Per instrument: cov^-1 H and cov^-1 z; together the information of the motion.

@@ -72,7 +72,7 @@ void RunObserver::on_frame(const SensorFrame& frame)
 {
     if (frame.unit != system_.unit || !shadow_ || frame.epoch != description_->epoch) return;
     shadow_->add(frame);
-    const auto state = shadow_->state();
+    const auto state = shadow_->publish();
     compare(identity_of(state), state.attitude, without_rollback_);
 }
 

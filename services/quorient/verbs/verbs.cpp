@@ -11,6 +11,11 @@ void add_verbs(CLI::App& program)
     add_readmit(program);
     add_health(program);
     add_record(program);
+    add_layout(program);
+    add_assess(program);
+    add_propagate(program);
+    add_simulate(program);
+    add_calibrate(program);
 }
 
 }  // namespace quorient::cli

@@ -75,6 +75,7 @@ private:
     struct Totals {
         geometry::AxisVector angle;  ///< of every axis
         Eigen::Matrix3d jitter = Eigen::Matrix3d::Zero();  ///< sum of h^2 a a'
+        double wildness = 0;  ///< sum of h^2 |a|^2, with |a| slow to fall
         Eigen::Vector3d rate = Eigen::Vector3d::Zero();
         double time_s = 0;
         double turned_rad = 0;  ///< sum of |omega| h
@@ -123,6 +124,7 @@ private:
     bool alert_ = false;
     std::optional<Eigen::Vector3d> previous_rate_;
     Eigen::Vector3d previous_acceleration_ = Eigen::Vector3d::Zero();
+    double wildness_ = 0;
     std::size_t window_ = 0;
 };
 

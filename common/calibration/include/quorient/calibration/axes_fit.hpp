@@ -1,0 +1,26 @@
+#pragma once
+
+#include "quorient/calibration/sample.hpp"
+
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+namespace quorient::calibration {
+
+/// Directions and gains that make all axes agree: measured = gain * (h'omega) + bias.
+struct AxesFit {
+    geometry::Axes axes;        ///< unit rows
+    geometry::AxisVector gain;  ///< their mean is 1: a scale common to all axes cannot be seen
+    double residual_rad_s = 0;  ///< rms over axes and samples, in units of the corrected axes
+    std::size_t samples = 0;
+};
+
+/// Least squares over rates without bias: the three directions in axis space that hold the motion (the eigenvectors of the samples' second
+/// moment), turned, scaled and sheared to lie closest to the nominal axes. What the nominal axes have in common (a rotation of the
+/// whole cluster, a common scale) is therefore kept from them.
+/// @returns an error if the cluster has no redundancy, or the motion did not turn about all three body axes.
+tl::expected<AxesFit, std::string> fit_axes(const std::vector<geometry::AxisVector>& unbiased_rates, const geometry::Axes& nominal,
+                                            double noise_rad_s);
+
+}  // namespace quorient::calibration

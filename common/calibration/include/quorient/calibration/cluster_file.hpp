@@ -1,0 +1,32 @@
+#pragma once
+
+#include "quorient/messages/cluster_description.hpp"
+#include "quorient/messages/limits.hpp"
+
+#include <array>
+#include <string>
+#include <tl/expected.hpp>
+
+namespace quorient::calibration {
+
+/// A cluster as calibrated. Whoever plays raw measurements takes out the bias, then divides by the gain:
+/// increment = (raw - bias * interval) / gain.
+struct CalibratedCluster {
+    ClusterDescription description;  ///< axes, bias, sigma, range … of the corrected increments
+    std::array<double, max_axes> gain{};
+    std::array<double, max_axes> bias_spread_rad_s{};
+    double jitter_along_s = 0;  ///< as MotionNoise
+    double jitter_across_s = 0;
+    std::string origin;  ///< which log it comes from
+};
+
+/// The YAML text of a cluster file; doubles read back bit-identical.
+std::string to_yaml(const CalibratedCluster& cluster);
+
+/// @returns every problem of the text at once, one per line with name:line:column.
+tl::expected<CalibratedCluster, std::string> parse_cluster(const std::string& text, const std::string& name);
+
+/// Reads a cluster file.
+tl::expected<CalibratedCluster, std::string> load_cluster(const std::string& file);
+
+}  // namespace quorient::calibration

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "quorient/calibration/sample.hpp"
+
+#include <vector>
+
+namespace quorient::calibration {
+
+/// What the axes' disagreement grows with when the cluster moves: as if each instrument sampled at its own, jittering time.
+/// Covariance of an axis h under the angular acceleration a: s0^2 + along_s^2 (h'a)^2 + across_s^2 (|a|^2 - (h'a)^2). [methods, item 5]
+struct MotionNoise {
+    double along_s = 0;
+    double across_s = 0;
+    double largest_acceleration_rad_s2 = 0;  ///< that the estimate has seen
+    std::size_t samples = 0;
+};
+
+/// Disagreement at one level of angular acceleration, for a plot.
+struct DisagreementBin {
+    double acceleration_rad_s2 = 0;
+    double residual_rad_s = 0;  ///< rms per axis, corrected for the fit's own share
+    std::size_t samples = 0;
+};
+
+/// Disagreement after averaging: how much of it is noise and how much stays.
+struct WindowResidual {
+    std::size_t frames = 0;
+    double residual_rad_s = 0;  ///< rms per axis of the window's mean residual
+    std::size_t windows = 0;
+};
+
+struct MotionFigures {
+    MotionNoise noise;
+    std::vector<DisagreementBin> bins;
+    std::vector<WindowResidual> windows;
+};
+
+/// @param rates      without bias, divided by the gains: one per sample; where `usable` is false they are passed over.
+/// @param deviation  of one sample at rest, per axis, likewise divided by the gains.
+MotionFigures motion_figures(Samples samples, const std::vector<geometry::AxisVector>& rates, const std::vector<bool>& usable,
+                             const geometry::Axes& axes, const geometry::AxisVector& deviation);
+
+}  // namespace quorient::calibration
