@@ -1,0 +1,122 @@
+#include "calibration_report.hpp"
+#include "cluster_input.hpp"
+#include "failure.hpp"
+#include "json_output.hpp"
+#include "quorient/recording/reader.hpp"
+#include "verbs.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+namespace quorient::cli {
+
+namespace {
+
+struct CalibrateOptions {
+    std::string log;
+    ClusterChoice choice;
+    std::string out;
+    std::string plot;
+    calibration::RestSettings rest;
+    bool json = false;
+};
+
+calibration::Sample sample_of(const recording::RecordedFrame& frame, bool follows)
+{
+    calibration::Sample sample;
+    sample.time_s = static_cast<double>(frame.time_ns) * 1e-9;
+    sample.interval_s = frame.interval_s;
+    sample.rate = Eigen::Map<const Eigen::VectorXd>(frame.increment.data(), static_cast<Eigen::Index>(frame.axis_count)) / frame.interval_s;
+    sample.complete = frame.valid_mask == all_axes(frame.axis_count);
+    sample.follows = follows;
+    return sample;
+}
+
+std::vector<calibration::Sample> read_samples(recording::Reader& reader)
+{
+    std::vector<calibration::Sample> samples;
+    recording::RecordedFrame frame;
+    for (auto outcome = reader.next(frame); outcome != recording::ReadOutcome::end; outcome = reader.next(frame)) {
+        if (outcome == recording::ReadOutcome::rejected) fmt::print(stderr, "{}\n", reader.problem());
+        else samples.push_back(sample_of(frame, frame.lost_before == 0));
+    }
+    return samples;
+}
+
+/// The log's own nominal axes, or those that the user names: a plain CSV has none.
+ClusterDescription nominal_cluster(const CalibrateOptions& options, const recording::Reader& reader)
+{
+    ClusterDescription nominal = reader.description();
+    if (options.choice.name().empty()) {
+        const bool known =
+            std::any_of(nominal.axis.begin(), nominal.axis.end(), [](const auto& axis) { return axis != std::array<double, 3>{}; });
+        if (!known) fail(fmt::format("{} does not say where its axes point: name --layout or --axes", options.log));
+        return nominal;
+    }
+    const auto cluster = load_cluster(options.choice);
+    if (!cluster) fail(cluster.error());
+    if (cluster->size() != nominal.axis_count)
+        fail(fmt::format("{} has {} axes, {} has {}", options.choice.name(), cluster->size(), options.log, nominal.axis_count));
+    nominal.instrument_count = static_cast<std::uint8_t>(cluster->instrument_name.size());
+    for (std::size_t axis = 0; axis < cluster->size(); ++axis) {
+        Eigen::Vector3d::Map(nominal.axis[axis].data()) = cluster->axes.row(static_cast<Eigen::Index>(axis));
+        nominal.instrument[axis] = static_cast<std::uint8_t>(cluster->instrument[axis]);
+    }
+    for (std::size_t i = 0; i < cluster->instrument_name.size(); ++i) {
+        auto& name = nominal.instrument_name[i];
+        name = {};
+        std::copy_n(cluster->instrument_name[i].begin(), std::min(name.size(), cluster->instrument_name[i].size()), name.begin());
+    }
+    return nominal;
+}
+
+void run(const CalibrateOptions& options)
+{
+    auto reader = recording::open_log(options.log);
+    if (!reader) fail(reader.error());
+    const ClusterDescription nominal = nominal_cluster(options, **reader);
+    const auto samples = read_samples(**reader);
+    auto calibration = calibration::calibrate(samples, nominal, options.rest);
+    if (!calibration) fail(fmt::format("{}: {}", options.log, calibration.error()));
+    calibration->cluster.origin = std::filesystem::path(options.log).filename().string();
+
+    const auto& statistics = (*reader)->statistics();
+    if (options.json) fmt::print("{}\n", dump(calibration_json(*calibration, samples, statistics)));
+    else fmt::print("{}", calibration_text(*calibration, samples, statistics));
+    if (!options.out.empty()) {
+        std::ofstream file(options.out, std::ios::binary);
+        file << calibration::to_yaml(calibration->cluster);
+        if (!file.flush()) fail(fmt::format("{}: cannot be written", options.out));
+    }
+    if (!options.plot.empty()) write_svg(options.plot, calibration_charts(*calibration));
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& program)
+{
+    auto* verb = program.add_subcommand("calibrate", "What a recording tells of its gyros: bias, noise, axes, motion noise, limits.");
+    verb->footer(
+        "The log must hold resting segments (biases, noise, Allan deviation); with motion about all three axes and more than three axes it "
+        "also gives\n"
+        "directions and gains. --out writes the cluster file that a publisher reads.\n\n"
+        "Example:\n"
+        "  quorient calibrate exp_1/data.bin --out cluster.yaml --plot calibration.svg\n");
+    const auto options = std::make_shared<CalibrateOptions>();
+    verb->add_option("log", options->log, "MIMU4444 binary, Xsens DOT CSV, or CSV as quorient simulate writes it")
+        ->option_text("LOG")
+        ->required();
+    add_cluster_options(*verb, options->choice);
+    verb->add_option("--out", options->out, "cluster file to write (YAML)");
+    verb->add_option("--plot", options->plot, "Allan deviation and motion noise, as SVG");
+    verb->add_option("--rest-s", options->rest.shortest_s, "shortest rest that counts, s")
+        ->capture_default_str()
+        ->check(CLI::PositiveNumber);
+    verb->add_flag("--json", options->json, "one JSON object");
+    verb->callback([options] { run(*options); });
+}
+
+}  // namespace quorient::cli

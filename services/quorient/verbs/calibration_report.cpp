@@ -1,0 +1,147 @@
+#include "calibration_report.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace quorient::cli {
+
+namespace {
+
+using calibration::Calibration;
+using calibration::Samples;
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+std::string axis_name(const Calibration& calibration, std::size_t axis)
+{
+    const auto& description = calibration.cluster.description;
+    const auto& name = description.instrument_name[description.instrument[axis]];
+    return {name.begin(), std::find(name.begin(), name.end(), '\0')};
+}
+
+Json axis_json(const Calibration& calibration, std::size_t axis)
+{
+    const auto& cluster = calibration.cluster;
+    const auto row = static_cast<Eigen::Index>(axis);
+    return {{"axis", axis},
+            {"instrument", axis_name(calibration, axis)},
+            {"bias_rad_s", cluster.description.bias[axis]},
+            {"bias_spread_rad_s", cluster.bias_spread_rad_s[axis]},
+            {"sigma_rad", cluster.description.sigma[axis]},
+            {"gain", cluster.gain[axis]},
+            {"direction", cluster.description.axis[axis]},
+            {"misalignment_rad", calibration.misalignment_rad[axis]},
+            {"random_walk_rad_sqrt_s", calibration.allan_figures.random_walk_rad_sqrt_s(row)},
+            {"bias_instability_rad_s", calibration.allan_figures.bias_instability_rad_s(row)},
+            {"limit_rad_s", calibration.saturation_limit_rad_s[axis] > 0 ? Json(calibration.saturation_limit_rad_s[axis]) : Json()},
+            {"saturated", calibration.saturated[axis]}};
+}
+
+Json motion_json(const Calibration& calibration)
+{
+    if (!calibration.motion) return {};
+    const auto& motion = *calibration.motion;
+    Json windows = Json::array();
+    for (const auto& window : motion.windows)
+        if (window.windows > 0)
+            windows.push_back({{"frames", window.frames}, {"residual_rad_s", window.residual_rad_s}, {"windows", window.windows}});
+    return {{"along_s", motion.noise.along_s},
+            {"across_s", motion.noise.across_s},
+            {"largest_acceleration_rad_s2", motion.noise.largest_acceleration_rad_s2},
+            {"samples", motion.noise.samples},
+            {"axes_residual_rad_s", calibration.axes_residual_rad_s},
+            {"windows", windows}};
+}
+
+double resting_s(const Calibration& calibration, Samples samples)
+{
+    double total_s = 0;
+    for (const auto& segment : calibration.rest) total_s += samples[segment.end - 1].time_s - samples[segment.begin].time_s;
+    return total_s;
+}
+
+}  // namespace
+
+Json calibration_json(const Calibration& calibration, Samples samples, const recording::Statistics& statistics)
+{
+    Json axes = Json::array();
+    for (std::size_t axis = 0; axis < calibration.cluster.description.axis_count; ++axis) axes.push_back(axis_json(calibration, axis));
+    Json rest = Json::array();
+    for (const auto& segment : calibration.rest)
+        rest.push_back({{"begin_s", samples[segment.begin].time_s}, {"end_s", samples[segment.end - 1].time_s}});
+    Json tau = Json::array();
+    Json deviation = Json::array();
+    for (const auto& point : calibration.allan) {
+        tau.push_back(point.tau_s);
+        deviation.push_back(vector_json(point.deviation_rad_s));
+    }
+    return {{"log", recording::summary(statistics)},
+            {"frames", statistics.frames},
+            {"rest", rest},
+            {"axes", axes},
+            {"axes_note", calibration.axes_note.empty() ? Json() : Json(calibration.axes_note)},
+            {"motion_noise", motion_json(calibration)},
+            {"allan", {{"tau_s", tau}, {"deviation_rad_s", deviation}}}};
+}
+
+std::string calibration_text(const Calibration& calibration, Samples samples, const recording::Statistics& statistics)
+{
+    std::string text = fmt::format("{}\n{} resting segments, {:.1f} s\n\n", recording::summary(statistics), calibration.rest.size(),
+                                   resting_s(calibration, samples));
+    text +=
+        "axis instrument  bias deg/s  spread   sigma deg/s  gain-1 %  off nominal deg  walk deg/sqrt(h)  instability deg/h  limit deg/s  "
+        "saturated\n";
+    for (std::size_t axis = 0; axis < calibration.cluster.description.axis_count; ++axis) {
+        const auto row = static_cast<Eigen::Index>(axis);
+        const double limit = calibration.saturation_limit_rad_s[axis];
+        text += fmt::format("{:>4} {:<10} {:>11.3f} {:>7.3f} {:>13.3f} {:>9.2f} {:>16.2f} {:>17.2f} {:>18.1f} {:>12} {:>10}\n", axis,
+                            axis_name(calibration, axis), calibration.at_rest.bias_rad_s(row) / degree,
+                            calibration.at_rest.bias_spread_rad_s(row) / degree, calibration.at_rest.deviation_rad_s(row) / degree,
+                            100 * (calibration.cluster.gain[axis] - 1), calibration.misalignment_rad[axis] / degree,
+                            calibration.allan_figures.random_walk_rad_sqrt_s(row) / degree * 60,
+                            calibration.allan_figures.bias_instability_rad_s(row) / degree * 3600,
+                            limit > 0 ? fmt::format("{:.2f}", limit / degree) : "-", calibration.saturated[axis]);
+    }
+    if (!calibration.motion) return text + fmt::format("\nnominal axes are kept: {}\n", calibration.axes_note);
+    const auto& motion = *calibration.motion;
+    text += fmt::format("\naxes fitted: they disagree by {:.2f} deg/s rms in motion\n", calibration.axes_residual_rad_s / degree);
+    if (motion.noise.samples == 0) return text + "motion noise: no sample turned violently enough to show it\n";
+    text += fmt::format("motion noise: {:.3f} ms x |dw/dt| along it, {:.3f} ms across ({} samples, up to {:.0f} deg/s^2)\n",
+                        motion.noise.along_s * 1e3, motion.noise.across_s * 1e3, motion.noise.samples,
+                        motion.noise.largest_acceleration_rad_s2 / degree);
+    for (const auto& window : motion.windows)
+        if (window.windows > 0)
+            text += fmt::format("  mean of {:>3} frames: {:.2f} deg/s rms ({} windows)\n", window.frames, window.residual_rad_s / degree,
+                                window.windows);
+    return text;
+}
+
+std::vector<Chart> calibration_charts(const Calibration& calibration)
+{
+    Chart allan{"Allan deviation at rest", "averaging time, s", "deg/s", true, true, {}};
+    const auto& description = calibration.cluster.description;
+    for (std::size_t axis = 0; axis < description.axis_count; ++axis) {
+        Series series{fmt::format("{} {}", axis, axis_name(calibration, axis)), {}, colour(description.instrument[axis]), true};
+        for (const auto& point : calibration.allan)
+            series.points.emplace_back(point.tau_s, point.deviation_rad_s(static_cast<Eigen::Index>(axis)) / degree);
+        allan.series.push_back(std::move(series));
+    }
+    if (!calibration.motion || calibration.motion->bins.empty()) return {allan};
+
+    Chart motion{"Disagreement of the axes in motion", "angular acceleration, deg/s^2", "deg/s rms per axis", true, true, {}};
+    Series measured{"measured", {}, colour(0), false};
+    Series along{"along x |dw/dt|", {}, colour(1), true};
+    Series across{"across x |dw/dt|", {}, colour(2), true};
+    for (const auto& bin : calibration.motion->bins) {
+        const double acceleration = bin.acceleration_rad_s2 / degree;
+        measured.points.emplace_back(acceleration, bin.residual_rad_s / degree);
+        along.points.emplace_back(acceleration, acceleration * calibration.motion->noise.along_s);
+        across.points.emplace_back(acceleration, acceleration * calibration.motion->noise.across_s);
+    }
+    motion.series = {measured, along, across};
+    return {allan, motion};
+}
+
+}  // namespace quorient::cli

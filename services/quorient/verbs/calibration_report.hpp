@@ -1,0 +1,21 @@
+#pragma once
+
+#include "json_output.hpp"
+#include "quorient/calibration/calibration.hpp"
+#include "quorient/recording/reader.hpp"
+#include "svg_plot.hpp"
+
+#include <string>
+#include <vector>
+
+namespace quorient::cli {
+
+Json calibration_json(const calibration::Calibration& calibration, calibration::Samples samples, const recording::Statistics& statistics);
+
+std::string calibration_text(const calibration::Calibration& calibration, calibration::Samples samples,
+                             const recording::Statistics& statistics);
+
+/// Allan deviation of every axis; disagreement over angular acceleration where the motion showed it.
+std::vector<Chart> calibration_charts(const calibration::Calibration& calibration);
+
+}  // namespace quorient::cli
