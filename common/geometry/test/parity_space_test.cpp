@@ -25,7 +25,7 @@ protected:
 INSTANTIATE_TEST_SUITE_P(ParitySpace, OnEveryLayout,
                          testing::Values("orthogonal-3-plus-1", "cone-4", "cone-3-axis", "cone-5", "cone-5-printed", "cone-6",
                                          "dodecahedron", "octahedron-8", "tdof-symmetric", "tdof-orthogonal", "tdof-coplanar", "cone-7",
-                                         "triads-4", "triads-8", "two-triads:1,1,1,60"));
+                                         "cone-24", "triads-4", "triads-8", "two-triads:1,1,1,60"));
 
 TEST_P(OnEveryLayout, is_blind_to_motion)
 {
