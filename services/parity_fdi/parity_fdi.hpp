@@ -32,7 +32,7 @@ private:
     runtime::FrameIntake intake_;
     std::optional<fdi::FaultMonitor> monitor_;
     FaultVerdict last_;
-    bool adopting_ = true;  ///< until this detector's first judgement, or an order
+    bool adopting_ = true;                      ///< until this detector's first judgement, or an order
     std::optional<AttitudeState> lane_memory_;  ///< what the lane's integrator last said of exclusions
     std::int64_t arrival_ns_ = 0;
     std::uint64_t told_rejected_ = 0;

@@ -1,10 +1,14 @@
+#include "describe.hpp"
+#include "quorient/attitude/quaternion.hpp"
 #include "quorient/recording/reader.hpp"
 #include "quorient/recording/rest_statistics.hpp"
 #include "quorient/runtime/text.hpp"
 #include "sources.hpp"
 
 #include <fmt/format.h>
-#include <cmath>
+#include <Eigen/Cholesky>
+#include <limits>
+#include <optional>
 
 namespace quorient::sensor {
 
@@ -93,15 +97,23 @@ private:
     bool started_ = false;
 };
 
-/// Nominal geometry of the log, with the biases and sigmas of its beginning.
+/// The log's own geometry with the biases and sigmas of its beginning, or the system file's with its noise.
 tl::expected<ClusterDescription, std::string> describe_log(recording::Reader& reader, const system::SensorSettings& settings,
                                                            std::uint64_t epoch)
 {
     auto description = reader.description();
-    const auto rest = recording::rest_statistics(reader, settings.source.log->rest_s);
-    if (!rest) return tl::make_unexpected(rest.error());
-    description.bias = rest->bias_rad_s;
-    description.sigma = rest->sigma_rad;
+    if (settings.cluster) {
+        if (settings.cluster->size() != description.axis_count)
+            return tl::make_unexpected(fmt::format("{}: has {} axes, the system file's layout {}", settings.source.log->file,
+                                                   description.axis_count, settings.cluster->size()));
+        description = describe(*settings.cluster);
+    }
+    if (settings.source.log->rest_s > 0) {
+        const auto rest = recording::rest_statistics(reader, settings.source.log->rest_s);
+        if (!rest) return tl::make_unexpected(rest.error());
+        description.bias = rest->bias_rad_s;
+        description.sigma = rest->sigma_rad;
+    }
     description.epoch = epoch;
     description.revision = 1;
     description.unit = settings.process.node.unit;
@@ -111,6 +123,18 @@ tl::expected<ClusterDescription, std::string> describe_log(recording::Reader& re
     return description;
 }
 
+/// Where a log with truth begins: its first truth is that at the *end* of the first interval, so the first rotation is taken back.
+/// Exact but for the coning within one interval and the first frame's quantisation.
+std::optional<std::array<double, 4>> attitude_at_start(const std::string& file, const geometry::SensorCluster& cluster)
+{
+    auto reader = recording::open_log(file);
+    recording::RecordedFrame first;
+    if (!reader || (*reader)->next(first) != recording::ReadOutcome::frame || !first.truth) return std::nullopt;
+    const geometry::AxisVector increment = Eigen::Map<const Eigen::VectorXd>(first.increment.data(), cluster.axes.rows());
+    const Eigen::Vector3d rotation = (cluster.axes.transpose() * cluster.axes).ldlt().solve(cluster.axes.transpose() * increment);
+    return attitude::to_array(attitude::from_array(*first.truth) * attitude::from_rotation_vector(-rotation));
+}
+
 }  // namespace
 
 tl::expected<std::unique_ptr<FrameSource>, std::string> make_log_source(const system::SensorSettings& settings, std::uint64_t epoch)
@@ -118,10 +142,14 @@ tl::expected<std::unique_ptr<FrameSource>, std::string> make_log_source(const sy
     const auto& file = settings.source.log->file;
     auto beginning = recording::open_log(file);
     if (!beginning) return tl::make_unexpected(beginning.error());
-    const auto description = describe_log(**beginning, settings, epoch);
+    auto description = describe_log(**beginning, settings, epoch);
     if (!description) return tl::make_unexpected(description.error());
     const auto cluster = geometry::make_cluster(*description);
     if (!cluster) return tl::make_unexpected(fmt::format("{}: {}", file, cluster.error()));
+    if (const auto start = attitude_at_start(file, *cluster); start && !description->initial_attitude_known) {
+        description->initial_attitude = *start;
+        description->initial_attitude_known = 1;
+    }
 
     auto reader = recording::open_log(file);
     if (!reader) return tl::make_unexpected(reader.error());

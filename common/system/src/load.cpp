@@ -224,7 +224,6 @@ tl::expected<System, std::string> load(const std::string& file, const Overrides&
     parse_process(root, overrides, base);
     parse_unit(root.section("unit"), system);
     parse_source(root.section("source"), system);
-    system.interval_s = system.sensor.cluster ? system.sensor.cluster->interval_s : system.interval_s;
     base.bus.heartbeat_s = system.interval_s / 2;
     parse_sensor(root.section("sensor"), system, base, overrides);
     parse_lanes(root, system, base, overrides);

@@ -110,15 +110,15 @@ void parse_log(Section& source, System& system)
 {
     LogSettings log;
     source.text("file", log.file);
-    source.number("rest_s", log.rest_s, {.lowest = 0, .lowest_included = false, .unit = "s"});
+    source.require("file");
+    // Where the file itself states the axes, it states their noise too.
+    if (system.sensor.cluster) log.rest_s = 0;
+    source.number("rest_s", log.rest_s, {.lowest = 0, .unit = "s"});
     source.number("from_s", log.from_s, runtime::not_negative);
     source.number("to_s", log.to_s, runtime::above_zero);
-    source.number("speed", system.sensor.source.speed, runtime::above_zero);
-    double rate_hz = 62.5;
-    source.number("rate_hz", rate_hz, {.lowest = 1, .highest = 20'000, .unit = "Hz"});
-    system.interval_s = 1 / rate_hz;
-    source.require("file");
     system.sensor.source.log = std::move(log);
+    // A simulation's file serves for the replay of its own recording: what only the simulation needs is passed over.
+    for (const char* key : {"motion", "duration_s", "quantize"}) source.raw(key);
 }
 
 void parse_simulation(Section& source, System& system)
@@ -127,13 +127,7 @@ void parse_simulation(Section& source, System& system)
     const auto motion = simulation::checked(parse_motion(source.section("motion")));
     if (motion) scenario.motion = *motion;
     else source.problem("motion", motion.error());
-    double rate_hz = 200;
-    source.number("rate_hz", rate_hz, {.lowest = 1, .highest = 20'000, .unit = "Hz"});
-    scenario.interval_s = 1 / rate_hz;
     source.number("duration_s", scenario.duration_s, {.lowest = 0, .unit = "s"});
-    source.number("quantum_rad", scenario.quantum, {.lowest = 0, .unit = "rad"});
-    source.number("noise_rad", scenario.noise_rad, {.lowest = 0, .unit = "rad"});
-    source.number("speed", system.sensor.source.speed, runtime::above_zero);
     std::string quantize = scenario.quantum > 0 ? "carry" : "none";
     source.text("quantize", quantize);
     if (const auto way = simulation::parse_quantize(quantize)) scenario.quantize = *way;
@@ -179,6 +173,13 @@ void parse_source(Section source, System& system)
     source.text("kind", kind);
     source.whole("seed", system.sensor.source.scenario.seed);
     parse_faults(source, system);
+    auto& scenario = system.sensor.source.scenario;
+    double rate_hz = kind == "log" ? 62.5 : 200;
+    source.number("rate_hz", rate_hz, {.lowest = 1, .highest = 20'000, .unit = "Hz"});
+    system.interval_s = scenario.interval_s = 1 / rate_hz;
+    source.number("quantum_rad", scenario.quantum, {.lowest = 0, .unit = "rad"});
+    source.number("noise_rad", scenario.noise_rad, {.lowest = 0, .unit = "rad"});
+    source.number("speed", system.sensor.source.speed, runtime::above_zero);
     if (kind == "log") parse_log(source, system);
     else if (kind == "simulation") parse_simulation(source, system);
     else source.problem("kind", fmt::format("unknown source '{}'; known are simulation and log", kind));
@@ -186,10 +187,9 @@ void parse_source(Section source, System& system)
     auto& cluster = system.sensor.cluster;
     if (kind == "simulation") {
         if (!cluster) source.problem("kind", "a simulation needs unit.layout or unit.axes");
-        else if (const auto ok = simulation::check(system.sensor.source.scenario, *cluster); !ok) source.problem("kind", ok.error());
+        else if (const auto ok = simulation::check(scenario, *cluster); !ok) source.problem("kind", ok.error());
     }
     if (cluster) {
-        const auto& scenario = system.sensor.source.scenario;
         cluster->sigma.setConstant(scenario.noise_rad);
         cluster->quantum.setConstant(scenario.quantum);
         cluster->interval_s = scenario.interval_s;

@@ -23,7 +23,7 @@ void Errors::add(Identity identity, double error_rad)
     final_rad = error_rad;
 }
 
-RunObserver::RunObserver(const system::System& system) : system_(system)
+RunObserver::RunObserver(const system::System& system, Shadow shadow) : system_(system), shadow_wanted_(shadow)
 {
     for (const auto& lane : system.lanes) {
         auto& record = lanes_.emplace_back();
@@ -58,7 +58,7 @@ void RunObserver::on_description(const ClusterDescription& description)
     if (description.unit != system_.unit) return;
     const bool first = !description_;
     description_ = description;
-    if (!first || system_.lanes.empty() || !description.initial_attitude_known) return;
+    if (!first || shadow_wanted_ == Shadow::off || system_.lanes.empty() || !description.initial_attitude_known) return;
     auto settings = system_.lanes.front().integrator.integration;
     settings.rollback = false;
     settings.leave_out_suspects = false;

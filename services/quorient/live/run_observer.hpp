@@ -52,10 +52,13 @@ struct VotedRecord {
     Errors errors;
 };
 
+/// Whether an integrator of the observer's own runs along without roll-back, for comparison.
+enum class Shadow { on, off };
+
 /// Compares what a system says with what the simulator knows. Fed by a live bus or by a replay; knows neither clock nor DDS.
 class RunObserver {
 public:
-    explicit RunObserver(const system::System& system);
+    explicit RunObserver(const system::System& system, Shadow shadow = Shadow::on);
 
     void on_description(const ClusterDescription& description);
     void on_frame(const SensorFrame& frame);
@@ -98,6 +101,7 @@ private:
     LaneRecord* lane_of_detector(std::uint32_t detector);
 
     const system::System& system_;
+    Shadow shadow_wanted_;
     std::vector<LaneRecord> lanes_;
     VotedRecord voted_;
     Errors without_rollback_;

@@ -14,7 +14,7 @@ namespace quorient::cli {
 
 struct CsvOptions {
     std::optional<std::size_t> columns = std::nullopt;  ///< of every row; absent: as many as the first row has
-    bool allow_non_finite = false;       ///< `nan` and `inf` are values
+    bool allow_non_finite = false;                      ///< `nan` and `inf` are values
 };
 
 struct CsvRow {

@@ -46,6 +46,13 @@ void SystemOptions::add_to(CLI::App& verb)
         ->allow_extra_args(false);
 }
 
+void SystemOptions::add_replay_to(CLI::App& verb)
+{
+    verb.add_option("--system", file, "The system file (YAML); its source gives way to the log")->required()->type_name("FILE");
+    verb.add_option("--set", set, "A value in place of the file's (repeatable)")->type_name("KEY=VALUE")->allow_extra_args(false);
+    verb.add_option("--fault", faults, "One more fault, e.g. axis=7,kind=bias,value=1,start=14 (repeatable)")->allow_extra_args(false);
+}
+
 std::vector<std::string> SystemOptions::assignments() const
 {
     auto result = set;

@@ -33,6 +33,9 @@ struct SystemOptions {
 
     void add_to(CLI::App& verb);
 
+    /// As a replay takes them: `--system FILE` instead of a position, no live options.
+    void add_replay_to(CLI::App& verb);
+
     /// All of it as values of the file.
     std::vector<std::string> assignments() const;
 

@@ -58,8 +58,13 @@ public:
     /// Ends run() after the handler that calls it.
     void quit(int exit_code);
 
+    bool quit_requested() const { return quit_; }
+
     /// Handles all that is there and due, without waiting. @returns whether anything was.
     bool dispatch();
+
+    /// One round of what is left for idle time. @returns whether more is left.
+    bool work();
 
     /// When the next timer is due; int64 max if none is set.
     std::int64_t next_deadline_ns() const;
@@ -76,7 +81,6 @@ private:
 
     void wait();
     bool fire_timers();
-    bool work();
 
     bus::Bus& bus_;
     const Clock& clock_;

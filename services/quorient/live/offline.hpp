@@ -1,0 +1,46 @@
+#pragma once
+
+#include "attitude_integrator.hpp"
+#include "parity_fdi.hpp"
+#include "quorient/bus/local_bus.hpp"
+#include "quorient/runtime/event_loop.hpp"
+#include "replay_report.hpp"
+#include "run_observer.hpp"
+#include "sensor_publisher.hpp"
+#include "voter.hpp"
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+namespace quorient::live {
+
+/// Every process of a system in one thread, on the local bus, under virtual time: the same objects as live, bit-identical on every run.
+class Offline {
+public:
+    Offline(system::System system, RunObserver& observer, ReplayReport& report);
+
+    /// Until the source ends. @returns what is wrong with the source.
+    tl::expected<void, std::string> run();
+
+    /// The latest status of the first lane's detector: what its intake refused.
+    const ServiceStatus& intake() const { return intake_; }
+
+private:
+    void observe(RunObserver& observer, ReplayReport& report);
+
+    system::System system_;
+    runtime::VirtualClock clock_;
+    std::atomic<bool> never_stop_{false};
+    bus::LocalHub hub_;
+    std::unique_ptr<bus::Bus> bus_;
+    runtime::EventLoop loop_;
+    std::vector<std::unique_ptr<voter::VoterService>> voters_;
+    std::vector<std::unique_ptr<integrator::AttitudeIntegrator>> integrators_;
+    std::vector<std::unique_ptr<detector::ParityFdi>> detectors_;
+    ServiceStatus intake_;
+};
+
+}  // namespace quorient::live

@@ -1,0 +1,101 @@
+#include "../live/offline.hpp"
+#include "../live/replay_report.hpp"
+#include "../live/run_observer.hpp"
+#include "json_output.hpp"
+#include "system_options.hpp"
+#include "verbs.hpp"
+
+#include <fmt/format.h>
+#include <memory>
+
+namespace quorient::cli {
+
+namespace {
+
+struct ReplayOptions {
+    SystemOptions system;
+    std::string log;
+    std::optional<double> from_s;
+    std::optional<double> to_s;
+    bool json = false;
+};
+
+Json report_json(const live::RunObserver& run, const live::ReplayReport& report, const ServiceStatus& intake)
+{
+    const auto& errors = run.voted().errors;
+    Json json;
+    json["frames"] = run.truth_frames();
+    json["rejected"] = {{"axes_and_frames", intake.rejected}, {"gaps", intake.gaps}};
+    json["faults"] = report.faults();
+    json["false_isolations"] = report.false_isolations();
+    auto& attitude = json["attitude"];
+    attitude = {{"final", nullptr}, {"max_error_rad", nullptr}, {"final_error_rad", nullptr}};
+    if (report.final_attitude()) attitude["final"] = report.final_attitude()->attitude;
+    if (errors.compared > 0) {
+        attitude["max_error_rad"] = errors.largest_rad;
+        attitude["final_error_rad"] = errors.final_rad;
+    }
+    return json;
+}
+
+void print_table(const Json& json)
+{
+    fmt::print("frames {}\n", json["frames"].get<std::uint64_t>());
+    for (const auto& fault : json["faults"]) {
+        fmt::print("{}\n", fault["spec"].get<std::string>());
+        if (!fault.contains("lanes")) continue;
+        for (const auto& [lane, reaction] : fault["lanes"].items())
+            fmt::print("  lane {:<8} detected {:<10} isolated {:<10} axes {}\n", lane, dump(reaction["detected_s"]),
+                       dump(reaction["isolated_s"]), dump(reaction["isolated"]));
+    }
+    fmt::print("false isolations {}\n", json["false_isolations"].size());
+    for (const auto& entry : json["false_isolations"])
+        fmt::print("  lane {} at {:.3f} s: axes {}\n", entry["lane"].get<std::string>(), entry["time_s"].get<double>(),
+                   dump(entry["axes"]));
+    fmt::print("final attitude {}, largest error {}, final error {} rad\n", dump(json["attitude"]["final"]),
+               dump(json["attitude"]["max_error_rad"]), dump(json["attitude"]["final_error_rad"]));
+}
+
+int replay(ReplayOptions options)
+{
+    options.system.set.push_back("source.kind=log");
+    options.system.set.push_back("source.faults=[]");  // the log is what it is; only --fault adds to it
+    options.system.log = options.log;
+    if (options.from_s) options.system.set.push_back(fmt::format("source.from_s={}", *options.from_s));
+    if (options.to_s) options.system.set.push_back(fmt::format("source.to_s={}", *options.to_s));
+    const auto system = options.system.load();
+
+    live::RunObserver run{system, live::Shadow::off};
+    live::ReplayReport report{system};
+    live::Offline offline{system, run, report};
+    if (const auto done = offline.run(); !done) {
+        fmt::print(stderr, "{}\n", done.error());
+        return 2;
+    }
+    const auto json = report_json(run, report, offline.intake());
+    if (options.json) fmt::print("{}\n", dump(json));
+    else print_table(json);
+    return 0;
+}
+
+}  // namespace
+
+void add_replay(CLI::App& program)
+{
+    auto* verb = program.add_subcommand(
+        "replay", "The whole system over a recording on the local bus, as fast as it goes; bit-identical on every run");
+    auto options = std::make_shared<ReplayOptions>();
+    verb->add_option("log", options->log, "MIMU4444 binary, Xsens DOT CSV, or the CSV of quorient simulate and record")
+        ->required()
+        ->type_name("LOG");
+    options->system.add_replay_to(*verb);
+    verb->add_option("--from", options->from_s, "Begin here")->type_name("S");
+    verb->add_option("--to", options->to_s, "End here")->type_name("S");
+    verb->add_flag("--json", options->json, "One JSON object");
+    verb->footer("Example:\n  quorient replay data.bin --system deploy/configurations/mimu4444.yaml --to 22 --json");
+    verb->callback([options] {
+        if (const int exit_code = replay(*options); exit_code != 0) throw CLI::RuntimeError(exit_code);
+    });
+}
+
+}  // namespace quorient::cli
