@@ -94,7 +94,8 @@ TEST(Rollback, equals_bit_for_bit_a_run_that_knew_at_once_on_every_layout_for_ev
 
 // One axis of cone-6 broken from `onset` on; verdicts as given by `verdict_at`. @returns the state after the last frame.
 template <class VerdictAt>
-AttitudeState run(const std::vector<SensorFrame>& frames, const geometry::SensorCluster& cluster, const VerdictAt& verdict_at, bool rollback = true)
+AttitudeState run(const std::vector<SensorFrame>& frames, const geometry::SensorCluster& cluster, const VerdictAt& verdict_at,
+                  bool rollback = true)
 {
     Integrator integrator = integrator_for(cluster, motion, history_frames * interval_s, rollback);
     for (const auto& frame : frames) {
@@ -125,7 +126,9 @@ protected:
 
 TEST_F(OneFault, leaves_no_error_behind_with_rollback_and_a_lasting_one_without)
 {
-    const auto verdict_at = [](std::uint64_t sequence) { return sequence >= onset + 20 ? isolating(sequence, axis, onset) : verdict_on(sequence); };
+    const auto verdict_at = [](std::uint64_t sequence) {
+        return sequence >= onset + 20 ? isolating(sequence, axis, onset) : verdict_on(sequence);
+    };
     const auto with = run(frames, cluster, verdict_at, true);
     const auto without = run(frames, cluster, verdict_at, false);
     EXPECT_LT(angle_to(with, truth), 1e-9);

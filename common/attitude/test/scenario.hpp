@@ -1,8 +1,8 @@
 #pragma once
 
 #include "coning.hpp"
-#include "quorient/attitude/integrator.hpp"
 #include "quorient/attitude/body_increment.hpp"
+#include "quorient/attitude/integrator.hpp"
 #include "quorient/geometry/layouts.hpp"
 
 #include <functional>

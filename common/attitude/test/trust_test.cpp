@@ -21,7 +21,7 @@ std::vector<FaultVerdict> eventful_verdicts(std::mt19937_64& random, std::size_t
     for (std::uint64_t sequence = 0; sequence < 120; ++sequence) {
         const std::size_t axis = random() % axes;
         if (random() % 12 == 0) from[axis] = sequence - std::min<std::uint64_t>(sequence, random() % 40);  // isolated, or revised
-        if (random() % 25 == 0) from[random() % axes] = never;                                              // re-admitted
+        if (random() % 25 == 0) from[random() % axes] = never;                                             // re-admitted
         constexpr std::array states{VerdictState::healthy, VerdictState::suspect,   VerdictState::isolated,
                                     VerdictState::blind,   VerdictState::ambiguous, VerdictState::warming_up};
         FaultVerdict verdict = verdict_on(sequence, states[random() % 3 == 0 ? random() % states.size() : 2]);
@@ -129,7 +129,9 @@ double largest_error_with_hard_over(const std::string& layout, std::size_t axis,
     Integrator integrator = Integrator::make(settings, cluster).value();
     double largest = 0;
     for (std::uint64_t sequence = 0; sequence < onset + 10; ++sequence) {
-        integrator.apply(sequence < onset ? verdict_on(sequence) : sequence < onset + 2 ? suspecting(sequence, axis_bit(axis)) : isolating(sequence, axis, onset));
+        integrator.apply(sequence < onset       ? verdict_on(sequence)
+                         : sequence < onset + 2 ? suspecting(sequence, axis_bit(axis))
+                                                : isolating(sequence, axis, onset));
         integrator.add(instrument.next());
         const auto state = integrator.publish();
         if (sequence >= onset) largest = std::max(largest, angle_to(state, instrument.attitude_after(sequence)));
@@ -150,7 +152,8 @@ TEST(Suspect, a_hard_over_never_reaches_the_attitude_on_any_layout_where_it_can_
             }
             EXPECT_LT(largest_error_with_hard_over(layout, axis, true), 1e-9) << layout << ", axis " << axis;
             const double turn_rad = 2000 * std::numbers::pi / 180 * interval_s;
-            EXPECT_GT(largest_error_with_hard_over(layout, axis, false), turn_rad * body.solve(cluster.all()).gain.col(static_cast<Eigen::Index>(axis)).norm())
+            EXPECT_GT(largest_error_with_hard_over(layout, axis, false),
+                      turn_rad * body.solve(cluster.all()).gain.col(static_cast<Eigen::Index>(axis)).norm())
                 << layout << ", axis " << axis;
         }
     }
