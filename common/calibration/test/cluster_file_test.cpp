@@ -1,0 +1,101 @@
+#include "quorient/calibration/cluster_file.hpp"
+
+#include "synthetic.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace quorient::calibration {
+namespace {
+
+using testing::HasSubstr;
+
+CalibratedCluster some_cluster()
+{
+    std::mt19937_64 random(9);
+    const Truth truth = three_triads(random);
+    CalibratedCluster cluster;
+    cluster.description = nominal_description();
+    std::copy_n("a board", 7, cluster.description.name.begin());
+    for (std::size_t axis = 0; axis < 9; ++axis) {
+        const auto row = static_cast<Eigen::Index>(axis);
+        Eigen::Vector3d::Map(cluster.description.axis[axis].data()) = truth.axes.row(row);
+        cluster.description.bias[axis] = truth.bias_rad_s(row);
+        cluster.description.sigma[axis] = 1e-5 / 3;
+        cluster.gain[axis] = truth.gain(row);
+    }
+    cluster.jitter_along_s = 1.0 / 3e3;
+    cluster.origin = "log \"one\".bin";
+    return cluster;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to)
+{
+    const auto place = text.find(from);
+    EXPECT_NE(place, std::string::npos) << from;
+    return text.replace(place, from.size(), to);
+}
+
+TEST(ClusterFile, reads_back_bit_for_bit)
+{
+    const CalibratedCluster cluster = some_cluster();
+    const std::string text = to_yaml(cluster);
+    const auto read = parse_cluster(text, "cluster.yaml");
+    ASSERT_TRUE(read) << read.error();
+    EXPECT_EQ(to_yaml(*read), text);
+    EXPECT_EQ(read->description.axis, cluster.description.axis);
+    EXPECT_EQ(read->description.bias, cluster.description.bias);
+    EXPECT_EQ(read->description.instrument, cluster.description.instrument);
+    EXPECT_EQ(read->description.instrument_count, 3);
+    EXPECT_EQ(read->gain, cluster.gain);
+    EXPECT_EQ(read->jitter_along_s, cluster.jitter_along_s);
+    EXPECT_EQ(read->origin, cluster.origin);
+}
+
+TEST(ClusterFile, names_every_problem_with_its_place)
+{
+    std::string text = to_yaml(some_cluster());
+    text = replaced(text, "along_s", "allong_s");
+    text = replaced(text, "gain: 1", "gain: -1");
+    text = replaced(text, "kind: gyro", "kind: compass");
+    const auto read = parse_cluster(text, "cluster.yaml");
+    ASSERT_FALSE(read);
+    EXPECT_THAT(read.error(),
+                AllOf(HasSubstr("cluster.yaml:4:7: kind must be gyro"), HasSubstr("cluster.yaml:7:16: unknown key 'allong_s'"),
+                      HasSubstr("'along_s' is missing"), HasSubstr("gain must be at least 0.1")));
+}
+
+TEST(ClusterFile, refuses_axes_that_no_cluster_can_have)
+{
+    const std::string good = to_yaml(some_cluster());
+    const auto error = [](const std::string& text) { return parse_cluster(text, "c").error(); };
+    EXPECT_THAT(error(replaced(good, "direction: [", "direction: [9")), HasSubstr("norm"));
+    EXPECT_THAT(error(replaced(good, "direction: [", "direction: [0, ")), HasSubstr("[x, y, z]"));
+    EXPECT_THAT(error(replaced(good, "sigma_rad: 3", "sigma_rad: .nan, position_m: [0, 0, 0], quantum_rad: 3")), HasSubstr("finite"));
+    EXPECT_THAT(error("axes: [1, 2, 3]"), HasSubstr("expected keys"));
+    EXPECT_THAT(error(""), HasSubstr("expected keys"));
+    EXPECT_THAT(error("axes: ["), HasSubstr("c:1"));
+    EXPECT_THAT(error("[]"), HasSubstr("known are"));
+    EXPECT_FALSE(load_cluster("/nowhere.yaml"));
+}
+
+TEST(ClusterFile, survives_any_damage)
+{
+    const std::string good = to_yaml(some_cluster());
+    const unsigned seed = 20240614;
+    std::mt19937 random(seed);
+    for (int trial = 0; trial < 300; ++trial) {
+        std::string text = good;
+        for (int damage = 0; damage < 4; ++damage) text[random() % text.size()] = static_cast<char>(random() % 128);
+        text.resize(text.size() - random() % 200);
+        const auto read = parse_cluster(text, "c");
+        if (read) {
+            EXPECT_GE(read->description.axis_count, 3) << "seed " << seed << " trial " << trial;
+        } else {
+            EXPECT_FALSE(read.error().empty());
+        }
+    }
+}
+
+}  // namespace
+}  // namespace quorient::calibration
