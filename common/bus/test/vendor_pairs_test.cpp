@@ -84,9 +84,9 @@ TEST_P(VendorPairs, carry_every_type_field_by_field)
 INSTANTIATE_TEST_SUITE_P(Loopback, VendorPairs,
                          testing::Combine(testing::Values(Vendor::fastdds, Vendor::cyclonedds),
                                           testing::Values(Vendor::fastdds, Vendor::cyclonedds)),
-                         [](const auto& info) {
-                             return std::string{to_string(std::get<0>(info.param))} + "_to_" +
-                                    std::string{to_string(std::get<1>(info.param))};
+                         [](const auto& pair) {
+                             return std::string{to_string(std::get<0>(pair.param))} + "_to_" +
+                                    std::string{to_string(std::get<1>(pair.param))};
                          });
 
 TEST_P(VendorPairs, report_a_reader_that_asks_for_another_ownership)

@@ -233,8 +233,10 @@ std::string configuration(const Settings& settings)
 
 tl::expected<std::unique_ptr<Bus>, std::string> open_cyclonedds(const Settings& settings)
 {
+    // A second bus of this process in the same domain shares the first one's domain and its configuration.
     const auto domain = dds_create_domain(settings.domain, configuration(settings).c_str());
-    if (domain < 0) return tl::make_unexpected(fmt::format("Cyclone DDS: domain {}: {}", settings.domain, dds_strretcode(-domain)));
+    if (domain < 0 && domain != DDS_RETCODE_PRECONDITION_NOT_MET)
+        return tl::make_unexpected(fmt::format("Cyclone DDS: domain {}: {}", settings.domain, dds_strretcode(-domain)));
     Entity owned_domain{domain};
 
     const QosHandle qos{dds_create_qos()};

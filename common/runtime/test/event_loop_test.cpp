@@ -1,0 +1,98 @@
+#include "quorient/runtime/event_loop.hpp"
+
+#include "quorient/bus/local_bus.hpp"
+
+#include <gtest/gtest.h>
+#include <vector>
+
+namespace quorient::runtime {
+
+namespace {
+
+class Loop : public testing::Test {
+protected:
+    Loop() : bus(hub.open()), loop(*bus, clock, stop) {}
+
+    bus::LocalHub hub;
+    std::unique_ptr<bus::Bus> bus;
+    VirtualClock clock;
+    std::atomic<bool> stop{false};
+    EventLoop loop;
+};
+
+TEST_F(Loop, hands_samples_over_in_order)
+{
+    std::vector<std::uint64_t> seen;
+    loop.on(bus->subscribe(bus::topics::frame), [&](const SensorFrame& frame) { seen.push_back(frame.sequence); });
+    auto publisher = bus->advertise(bus::topics::frame);
+    for (std::uint64_t i = 0; i < 3; ++i) {
+        SensorFrame frame;
+        frame.sequence = i;
+        publisher.publish(frame);
+    }
+    EXPECT_TRUE(loop.dispatch());
+    EXPECT_EQ(seen, (std::vector<std::uint64_t>{0, 1, 2}));
+    EXPECT_FALSE(loop.dispatch());
+}
+
+TEST_F(Loop, fires_a_timer_once_and_not_before_its_time)
+{
+    int fired = 0;
+    auto& timer = loop.timer([&] { ++fired; });
+    timer.set(100);
+    EXPECT_EQ(loop.next_deadline_ns(), 100);
+    clock.set(99);
+    loop.dispatch();
+    EXPECT_EQ(fired, 0);
+    clock.set(100);
+    loop.dispatch();
+    loop.dispatch();
+    EXPECT_EQ(fired, 1);
+}
+
+TEST_F(Loop, does_not_fire_a_cancelled_timer)
+{
+    auto& timer = loop.timer([] { FAIL(); });
+    timer.set(10);
+    timer.cancel();
+    clock.set(20);
+    EXPECT_FALSE(loop.dispatch());
+}
+
+TEST_F(Loop, skips_what_a_repeating_timer_missed)
+{
+    int fired = 0;
+    loop.every(10, [&] { ++fired; });
+    clock.set(95);
+    loop.dispatch();
+    EXPECT_EQ(fired, 1);
+    EXPECT_EQ(loop.next_deadline_ns(), 105);
+}
+
+TEST_F(Loop, lets_a_handler_set_its_own_timer_again)
+{
+    int fired = 0;
+    Timer* timer = nullptr;
+    timer = &loop.timer([&] {
+        if (++fired < 3) timer->set(clock.steady_ns());
+    });
+    timer->set(0);
+    while (loop.dispatch()) continue;
+    EXPECT_EQ(fired, 3);
+}
+
+TEST_F(Loop, ends_with_the_exit_code_it_was_told)
+{
+    loop.timer([&] { loop.quit(7); }).set(0);
+    EXPECT_EQ(loop.run(), 7);
+}
+
+TEST_F(Loop, ends_when_asked_to_stop)
+{
+    stop = true;
+    EXPECT_EQ(loop.run(), 0);
+}
+
+}  // namespace
+
+}  // namespace quorient::runtime
