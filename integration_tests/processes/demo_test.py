@@ -45,6 +45,20 @@ class DefaultDemo(ProcessTest):
         self.assertIn("not as expected", stderr)
 
 
+class TwoFaultsDemo(ProcessTest):
+    def test_names_both_faulty_axes_by_three_dissimilar_methods(self):
+        code, summary, stderr = self.launch(CONFIGURATIONS / "two-faults.yaml")
+        self.assertEqual(code, 0, f"{summary}\n{stderr}")
+        for name, lane in summary["lanes"].items():
+            self.assertEqual(lane["isolated"], [1, 4], name)
+
+    def test_names_nobody_without_the_faults(self):
+        code, summary, stderr = self.launch(
+            CONFIGURATIONS / "two-faults.yaml", "--set", "source.faults=[]", "--set", "source.duration_s=6", "--set", "expect={isolated: [], no_gap: true}"
+        )
+        self.assertEqual(code, 0, f"{summary}\n{stderr}")
+
+
 @unittest.skipUnless(RECORDING.exists(), f"no recording at {RECORDING}")
 class RecordingDemo(ProcessTest):
     def test_names_imu3_in_every_lane(self):
