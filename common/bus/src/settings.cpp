@@ -4,12 +4,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
 #include <array>
-#include <cerrno>
-#include <cstring>
 #include <utility>
 
 namespace quorient::bus {
@@ -23,22 +18,6 @@ constexpr std::array transports{std::pair{Transport::udp, "udp"}, std::pair{Tran
 
 /// Above this domain the RTPS ports leave the range of UDP [RTPS 9.6.1.1].
 constexpr std::uint32_t highest_domain = 230;
-
-/// Where RouDi 2.0 listens for runtimes that register.
-constexpr const char* roudi_socket = "/tmp/roudi";
-
-/// Cyclone would wait 60 s for a RouDi that is not there, deaf to SIGTERM; so ask first.
-bool roudi_answers()
-{
-    const int probe = ::socket(AF_UNIX, SOCK_DGRAM, 0);
-    if (probe < 0) return false;
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    std::strncpy(address.sun_path, roudi_socket, sizeof address.sun_path - 1);
-    const bool connected = ::connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-    ::close(probe);
-    return connected;
-}
 
 }  // namespace
 
@@ -93,8 +72,6 @@ std::vector<std::string> problems(const Settings& settings)
         found.push_back("transport iceoryx belongs to cyclonedds; fastdds has shm");
     if (shared && settings.security)
         found.push_back("shared memory would carry what DDS Security encrypts in plain text: use transport udp, or no security");
-    if (found.empty() && settings.transport == Transport::iceoryx && !roudi_answers())
-        found.push_back("iceoryx's daemon does not answer: start `iox-roudi -c deploy/configurations/roudi.toml`, or use transport udp");
     return found;
 }
 

@@ -47,14 +47,16 @@ Processes::~Processes()
     stop();
 }
 
-void Processes::add(std::string name, std::vector<std::string> command, std::string log_file)
+void Processes::add(std::string name, std::vector<std::string> command, std::string log_file, bool daemon)
 {
-    children_.push_back({.name = std::move(name), .command = std::move(command), .log_file = std::move(log_file)});
+    children_.push_back({.name = std::move(name), .command = std::move(command), .log_file = std::move(log_file), .daemon = daemon});
 }
 
 void Processes::start()
 {
-    for (auto& child : children_) spawn(child);
+    for (auto& child : children_) {
+        if (child.process < 0 && !child.ended) spawn(child);
+    }
 }
 
 std::vector<std::string> Processes::look(std::int64_t now_ns)
@@ -79,14 +81,21 @@ std::vector<std::string> Processes::look(std::int64_t now_ns)
 
 void Processes::stop()
 {
+    stop([](const Child& child) { return !child.daemon; });
+    stop([](const Child&) { return true; });
+}
+
+template <class Predicate>
+void Processes::stop(Predicate chosen)
+{
     for (const auto& child : children_) {
-        if (child.process <= 0) continue;
+        if (child.process <= 0 || !chosen(child)) continue;
         ::kill(child.process, SIGTERM);
         ::kill(child.process, SIGCONT);
     }
     const auto deadline = std::chrono::steady_clock::now() + stop_patience;
     for (auto& child : children_) {
-        while (child.process > 0) {
+        while (child.process > 0 && chosen(child)) {
             if (::waitpid(child.process, nullptr, WNOHANG) == child.process) child.process = -1;
             else if (std::chrono::steady_clock::now() > deadline) ::kill(child.process, SIGKILL);
             if (child.process > 0) std::this_thread::sleep_for(std::chrono::milliseconds{5});

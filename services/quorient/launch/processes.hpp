@@ -12,6 +12,7 @@ struct Child {
     std::string name;
     std::vector<std::string> command;
     std::string log_file;
+    bool daemon = false;  ///< serves the others: stopped after them
     pid_t process = -1;
     int restarts = 0;
     bool ended = false;  ///< in order (exit 0) or for good (exit 2: a restart cannot help)
@@ -25,8 +26,9 @@ public:
     ~Processes();
 
     /// Started again whenever it dies, unless it ended in order or with exit code 2.
-    void add(std::string name, std::vector<std::string> command, std::string log_file);
+    void add(std::string name, std::vector<std::string> command, std::string log_file, bool daemon = false);
 
+    /// Starts those that do not run yet.
     void start();
 
     /// Reaps the dead and starts again what is due. @returns the names of those that died since the last call.
@@ -39,6 +41,9 @@ public:
     const std::vector<Child>& all() const { return children_; }
 
 private:
+    template <class Predicate>
+    void stop(Predicate chosen);
+
     std::vector<Child> children_;
 };
 

@@ -3,6 +3,7 @@
 #include "../live/run_observer.hpp"
 #include "../live/summary.hpp"
 #include "json_output.hpp"
+#include "quorient/bus/roudi.hpp"
 #include "quorient/runtime/event_loop.hpp"
 #include "quorient/runtime/heartbeat.hpp"
 #include "quorient/runtime/signals.hpp"
@@ -11,9 +12,11 @@
 
 #include <fmt/format.h>
 #include <unistd.h>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <thread>
 
 namespace quorient::cli {
 
@@ -31,7 +34,7 @@ struct LaunchOptions {
 };
 
 /// Children leave heartbeats and logs; /run/quorient belongs to root.
-std::filesystem::path prepare_run_directory()
+void prepare_run_directory()
 {
     std::error_code refused;
     std::filesystem::create_directories(runtime::run_directory(), refused);
@@ -40,7 +43,6 @@ std::filesystem::path prepare_run_directory()
         std::filesystem::create_directories(own);
         ::setenv("QUORIENT_RUN_DIR", own.c_str(), 1);
     }
-    return runtime::run_directory();
 }
 
 /// The services stand beside this program.
@@ -51,7 +53,7 @@ std::string program(const char* name)
 
 void add_processes(const system::System& system, const SystemOptions& options, launch::Processes& processes)
 {
-    const auto run_directory = prepare_run_directory();
+    const auto run_directory = runtime::run_directory();
     const auto add = [&](const char* service, const std::string& name) {
         std::vector<std::string> command{program(service), options.file, "--name", name};
         if (!options.dds.empty()) command.insert(command.end(), {"--dds", options.dds});
@@ -65,6 +67,37 @@ void add_processes(const system::System& system, const SystemOptions& options, l
         add("quorient-fdi", lane.detector.process.node.name);
     }
     add("quorient-sensor", system.sensor.process.node.name);
+}
+
+/// Lanes and voters that share memory through iceoryx, counted as endpoints.
+std::size_t iceoryx_processes(const system::System& system)
+{
+    std::size_t count = 0;
+    const auto look = [&](const system::ProcessSettings& process) { count += process.bus.transport == Transport::iceoryx ? 1 : 0; };
+    look(system.sensor.process);
+    for (const auto& lane : system.lanes) {
+        look(lane.detector.process);
+        look(lane.integrator.process);
+    }
+    for (const auto& voter : system.voters) look(voter.process);
+    return count;
+}
+
+/// iceoryx's daemon, where the system needs it and none runs. @returns whether it answers.
+bool start_roudi(std::size_t participants, launch::Processes& processes)
+{
+    if (participants == 0 || bus::roudi_answers()) return true;
+    constexpr std::size_t endpoints_each = 8;
+    const auto configuration = runtime::run_directory() / "roudi.toml";
+    std::ofstream{configuration} << bus::roudi_configuration(participants * endpoints_each, participants * endpoints_each);
+    processes.add("roudi", {"/usr/bin/iox-roudi", "-c", configuration.string()}, (runtime::run_directory() / "roudi.log").string(), true);
+    processes.start();
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds{5};
+    while (!bus::roudi_answers()) {
+        if (std::chrono::steady_clock::now() > deadline) return false;
+        std::this_thread::sleep_for(std::chrono::milliseconds{10});
+    }
+    return true;
 }
 
 /// One run from start to summary.
@@ -84,11 +117,17 @@ public:
         loop_.on(bus.subscribe(bus::topics::attitude), [this](const AttitudeState& m) { observer_.on_attitude(m); });
         loop_.on(bus.subscribe(bus::topics::voter_output), [this](const VotedAttitude& m) { observer_.on_voted(m); });
         loop_.on(bus.subscribe(bus::topics::event), [this](const HealthEvent& m) { screen_.on_event(m); });
+        prepare_run_directory();
+        roudi_answers_ = start_roudi(iceoryx_processes(system), processes_);
         add_processes(system, options.system, processes_);
     }
 
     int run()
     {
+        if (!roudi_answers_) {
+            fmt::print(stderr, "iox-roudi does not answer within 5 s; its log: {}\n", (runtime::run_directory() / "roudi.log").string());
+            return 1;
+        }
         processes_.start();
         auto& end = loop_.timer([this] { loop_.quit(0); });
         loop_.every(second_ns / 20, [this, &end] { look_at_processes(end); });
@@ -137,6 +176,7 @@ private:
     launch::Screen screen_;
     runtime::EventLoop loop_;
     launch::Processes processes_;
+    bool roudi_answers_ = true;
     bool failed_ = false;
 };
 

@@ -29,7 +29,7 @@ std::string_view to_string(Vendor vendor);
 std::string_view to_string(Transport transport);
 
 /// Everything that can be told wrong before a participant exists: domain above 230, no such interface, a peer that is no address,
-/// a transport that the vendor does not have, shared memory together with security, iceoryx without RouDi.
+/// a transport that the vendor does not have, shared memory together with security.
 /// @returns one line per problem; empty when all is well.
 std::vector<std::string> problems(const Settings& settings);
 
