@@ -49,6 +49,7 @@ Node::Node(NodeSettings settings, bus::Bus& bus, EventLoop& loop)
     copy_text(version(), status_.version);
     if (settings_.heartbeat) {
         heartbeat_ = Heartbeat::open(settings_.name);
+        service_manager_ = ServiceManager::from_environment();
         if (!heartbeat_)
             spdlog::warn("{}: no heartbeat file in {}: `quorient health` will not see this service", settings_.name,
                          run_directory().string());
@@ -98,6 +99,8 @@ void Node::set_state(ServiceState state)
 {
     if (this->state() == state) return;
     status_.state = static_cast<std::uint8_t>(state);
+    if (service_manager_ && (state == ServiceState::ready || state == ServiceState::running)) service_manager_->ready();
+    if (service_manager_ && state == ServiceState::stopping) service_manager_->stopping();
     publish_status();
 }
 
@@ -109,6 +112,7 @@ void Node::handled(Identity identity, std::int64_t arrival_ns)
     ++status_.received;
     latency_ns_[latency_count_++ % latency_ns_.size()] = now - arrival_ns;
     if (heartbeat_) heartbeat_->beat(now, status_.received);
+    if (service_manager_) service_manager_->frame_handled(now);
 }
 
 void Node::watch(std::string_view what, std::function<bus::EndpointStatus()> status, bool must_match)

@@ -6,6 +6,7 @@
 #include "quorient/messages/service_status.hpp"
 #include "quorient/runtime/event_loop.hpp"
 #include "quorient/runtime/heartbeat.hpp"
+#include "quorient/runtime/service_manager.hpp"
 
 #include <array>
 #include <functional>
@@ -23,7 +24,7 @@ struct NodeSettings {
     std::uint32_t service = 0;  ///< unique in the domain
     ServiceRole role = ServiceRole::unknown;
     bool stamps = false;     ///< fill the hop stamps of messages
-    bool heartbeat = true;   ///< leave a heartbeat file
+    bool heartbeat = true;   ///< leave a heartbeat file, and tell the service manager
     bool log_events = true;  ///< also to stderr
 };
 
@@ -83,6 +84,7 @@ private:
     bus::Publisher<HealthEvent> events_;
     bus::Publisher<ServiceStatus> statuses_;
     std::optional<Heartbeat> heartbeat_;
+    std::optional<ServiceManager> service_manager_;
     ServiceStatus status_;
     std::uint64_t event_number_ = 0;
     std::array<std::int64_t, 256> last_told_ns_{};

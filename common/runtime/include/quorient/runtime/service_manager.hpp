@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace quorient::runtime {
+
+/// Talks to the service manager that started this process, if one did: the datagrams of sd_notify(3) to $NOTIFY_SOCKET.
+/// The watchdog is fed only with handled frames: a process that lives and hears nothing is restarted.
+class ServiceManager {
+public:
+    /// From the environment. @returns nothing where no service manager listens.
+    static std::optional<ServiceManager> from_environment();
+    ~ServiceManager();
+    ServiceManager(ServiceManager&& other) noexcept;
+    ServiceManager& operator=(ServiceManager&& other) noexcept;
+
+    /// Once, when the service sees all its inputs.
+    void ready();
+
+    void stopping();
+
+    /// A frame was handled now [ns, steady]. Sends at most one datagram a second, more often only for a watchdog below 2 s; none
+    /// without a watchdog.
+    void frame_handled(std::int64_t steady_ns);
+
+private:
+    ServiceManager(int socket, std::int64_t watchdog_ns) : socket_(socket), watchdog_ns_(watchdog_ns) {}
+    void send(std::string_view state) const;
+
+    int socket_;
+    std::int64_t watchdog_ns_;  // 0 = none
+    std::int64_t fed_ns_ = 0;
+    bool told_ready_ = false;
+};
+
+}  // namespace quorient::runtime

@@ -1,0 +1,32 @@
+# `cpack` makes quorient_*.deb and quorient-dev_*.deb.
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_VENDOR "Quorient")
+set(CPACK_PACKAGE_CONTACT "Quorient maintainers <maintainers@quorient.invalid>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL quorient quorient-dev)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+
+set(CPACK_DEBIAN_QUORIENT_PACKAGE_NAME quorient)
+set(CPACK_DEBIAN_QUORIENT_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_QUORIENT_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_QUORIENT_PACKAGE_SUGGESTS "iceoryx, tshark")
+set(CPACK_COMPONENT_QUORIENT_DESCRIPTION "fault-tolerant attitude pipeline over DDS
+ Independent processes isolate failed gyros, integrate the attitude without
+ them and vote on the result, so that one right attitude keeps flowing while
+ sensors, processes and networks fail. Speaks Fast DDS and Cyclone DDS.")
+set(CPACK_DEBIAN_QUORIENT_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_SOURCE_DIR}/packaging/postinst)
+
+set(CPACK_DEBIAN_QUORIENT-DEV_PACKAGE_NAME quorient-dev)
+set(CPACK_DEBIAN_QUORIENT-DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_QUORIENT-DEV_PACKAGE_DEPENDS "libeigen3-dev, libexpected-dev, libfmt-dev, libboost-dev, cmake")
+set(CPACK_COMPONENT_QUORIENT-DEV_DESCRIPTION "fault-tolerant attitude pipeline: libraries and wire contract
+ Static libraries, headers and the CMake configuration of the rooms for sensor
+ geometry, fault detection and isolation, attitude integration, voting,
+ simulation and recordings, and the IDL file of the DDS topics.")
+
+include(CPack)

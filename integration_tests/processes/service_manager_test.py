@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""The notify protocol of systemd, spoken by a stand-in for systemd."""
+import os
+import signal
+import socket
+import unittest
+
+from harness import CONFIGURATIONS, ProcessTest
+
+
+class ServiceManager(ProcessTest):
+    WATCHDOG_S = 0.4
+
+    def setUp(self):
+        super().setUp()
+        self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        self.addCleanup(self.socket.close)
+        path = str(self.run_directory / "notify")
+        self.socket.bind(path)
+        self.environment.update(NOTIFY_SOCKET=path, WATCHDOG_USEC=str(int(self.WATCHDOG_S * 1e6)))
+
+    def hear(self, timeout_s):
+        """The next datagram, or nothing."""
+        self.socket.settimeout(timeout_s)
+        try:
+            return self.socket.recv(4096).decode()
+        except TimeoutError:
+            return None
+
+    def drain(self):
+        while self.hear(0.01):
+            pass
+
+    def start_sensor(self):
+        return self.start(
+            "quorient-sensor", CONFIGURATIONS / "demo.yaml", "--domain", self.domain,
+            "--set", "source.duration_s=60", "--set", "source.faults=[]", "--set", "sensor.wait_s=0",
+        )
+
+    def test_a_service_says_ready_then_feeds_the_watchdog_then_that_it_stops(self):
+        sensor = self.start_sensor()
+        self.assertEqual(self.hear(10), "READY=1")
+        for _ in range(5):
+            self.assertEqual(self.hear(self.WATCHDOG_S), "WATCHDOG=1")
+        sensor.terminate()
+        heard = self.hear(5)
+        while heard == "WATCHDOG=1":
+            heard = self.hear(5)
+        self.assertEqual(heard, "STOPPING=1")
+        self.assertEqual(sensor.wait(10), 0)
+
+    def test_a_stopped_process_starves_the_watchdog(self):
+        sensor = self.start_sensor()
+        self.assertEqual(self.hear(10), "READY=1")
+        sensor.send_signal(signal.SIGSTOP)
+        self.drain()
+        self.assertIsNone(self.hear(2 * self.WATCHDOG_S))
+        sensor.send_signal(signal.SIGCONT)
+        self.assertEqual(self.hear(5), "WATCHDOG=1")
+
+    def test_a_detector_that_hears_no_sensor_is_not_ready_and_feeds_nothing(self):
+        detector = self.start("quorient-fdi", CONFIGURATIONS / "demo.yaml", "--name", "fdi-a", "--domain", self.domain)
+        self.eventually(lambda: (self.run_directory / "fdi-a.heartbeat").exists(), "the detector is up")
+        self.assertIsNone(self.hear(3 * self.WATCHDOG_S))
+        self.assertIsNone(detector.poll())
+
+    def test_a_watchdog_for_another_process_is_not_fed(self):
+        self.environment["WATCHDOG_PID"] = str(os.getpid())
+        self.start_sensor()
+        self.assertEqual(self.hear(10), "READY=1")
+        self.assertIsNone(self.hear(2 * self.WATCHDOG_S))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
