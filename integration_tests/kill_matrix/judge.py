@@ -1,0 +1,98 @@
+"""Figures of a run, from what was heard and the simulator's truth."""
+from dataclasses import dataclass, field
+
+from streams import HELD, angle
+
+
+@dataclass
+class Figures:
+    frames: int = 0
+    missing: int = 0  # frames of the publisher that the merged stream never answered
+    plain_gap: int = 0  # largest run of frames that a plain subscriber of `voted` did not see
+    disordered: int = 0  # output_sequence that did not increase, of one voter or in the plain stream
+    largest_error_rad: float = 0
+    final_error_rad: float = 0
+    contamination_rad: float = 0  # what the fault can do to the attitude in one frame
+    wrong_isolations: int = 0
+    frames_to_isolation: int = 3
+    frames_to_full: int = None
+    outside_sigmas: int = 0  # bridged attitudes whose error is above five of their standard deviations
+    claims: int = 0  # frames of a later epoch with a level that claims to know the attitude
+    levels: set = field(default_factory=set)
+
+
+def errors(samples, truth):
+    """(identity, error, sample) of every sample that stands for a frame of its own."""
+    for sample in samples:
+        true = truth.get(sample.identity)
+        if true is not None and sample.level not in HELD:
+            yield sample.identity, angle(sample.attitude, true.attitude), sample
+
+
+def missing_frames(samples, truth, first, end):
+    answered = {sample.identity for sample in samples}
+    return sorted(identity for identity in truth if first <= identity <= end and identity not in answered)
+
+
+def largest_gap(samples, truth, first, end):
+    """Longest run of consecutive frames of the publisher without a sample."""
+    missing = set(missing_frames(samples, truth, first, end))
+    longest = run = 0
+    for identity in sorted(truth):
+        run = run + 1 if identity in missing else 0
+        longest = max(longest, run)
+    return longest
+
+
+def disordered(samples, key):
+    last, count = {}, 0
+    for sample in samples:
+        count += sample.output_sequence <= last.get(key(sample), 0)
+        last[key(sample)] = sample.output_sequence
+    return count
+
+
+def frames_until(samples, since, condition, steady=20):
+    """Frames from `since` until the condition holds for so many different frames in a row; None = never."""
+    run = 0
+    for sample in samples:
+        if sample.identity[0] < since[0] or sample.identity <= since:
+            continue
+        run = run + 1 if condition(sample) else 0
+        if run >= steady:
+            return sample.identity[1] - steady + 1 - (since[1] if sample.identity[0] == since[0] else 0)
+    return None
+
+
+def judge(merged, plain, truths, summary, since, end, faulty, full):
+    """@param since identity at the action, end the last frame judged, faulty mask of axes that may be isolated."""
+    truth = {sample.identity: sample for sample in truths}
+    figures = Figures(frames=len(truth), levels={sample.level for sample in merged if sample.arrival_s})
+    first = merged[0].identity
+    own_missing = len(missing_frames(merged, truth, first, end))
+    # A frame that either of two listeners heard was published: the launch's own count bounds it too, within one epoch.
+    one_epoch = len({identity[0] for identity in truth}) == 1
+    figures.missing = min(own_missing, summary["voted"]["missing"]) if one_epoch else own_missing
+    figures.plain_gap = largest_gap(plain, truth, plain[0].identity, end)
+    figures.disordered = disordered(merged, lambda sample: sample.voter) + disordered(plain, lambda sample: 0)
+
+    judged = [(identity, error, sample) for identity, error, sample in errors(merged, truth) if identity[0] == since[0]]
+    figures.largest_error_rad = max(error for _, error, _ in judged)
+    figures.final_error_rad = max(judged)[1]
+    # Behind the action, where the standard deviation says how much of the motion is not known.
+    after = [entry for entry in judged if entry[0] > since]
+    figures.outside_sigmas = sum(error > 5 * sample.sigma_rad for _, error, sample in after if sample.sigma_rad > 1e-5)
+    figures.claims = sum(sample.identity[0] > since[0] and sample.level not in HELD for sample in merged)
+
+    ordered = sorted(identity for identity in truth if identity[0] == since[0])
+    steps = [angle(truth[a].attitude, truth[b].attitude) for a, b in zip(ordered, ordered[1:]) if b[1] == a[1] + 1]
+    figures.contamination_rad = 0.2 * max(steps)  # the scale fault takes a fifth of the axis' rate
+    seen = [mask for lane in summary["lanes"].values() for mask in lane["isolated"]]
+    figures.wrong_isolations = sum(not faulty >> axis & 1 for axis in seen)
+    figures.wrong_isolations += sum(bool(sample.isolated & ~faulty) for sample in merged)
+    told = [lane["frames_to_isolation"] for lane in summary["lanes"].values() if lane["frames_to_isolation"]]
+    figures.frames_to_isolation = min(max(told, default=3), 3)
+    strongest = min({sample.voter for sample in merged})
+    seen_once = [sample for sample in merged if sample.voter == strongest or strongest == 0]
+    figures.frames_to_full = frames_until(seen_once, since, full)
+    return figures

@@ -1,0 +1,175 @@
+"""One system under test: `quorient launch`, its children, and what three independent listeners hear of it."""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "processes"))
+from harness import BIN, CONFIGURATIONS  # noqa: E402
+from streams import Recording, parse_truth, parse_voted  # noqa: E402
+
+RATE_HZ = 200
+INTERVAL_S = 1 / RATE_HZ
+ALL_LANES = 0b111
+END_OF_GRACE_FRAMES = 20  # frames in flight while everything stops are nobody's loss
+
+
+class NotInTime(Exception):
+    pass
+
+
+def ask_for_priority():
+    """A loaded machine must not be mistaken for a dead process: everything under test runs before other people's work, where permitted."""
+    try:
+        os.setpriority(os.PRIO_PROCESS, 0, -15)
+    except PermissionError:
+        print("no permission to raise the priority: on a loaded machine times are not those of the system", file=sys.stderr)
+
+
+class Pipeline:
+    """Use as a context: whatever happens inside, every process that it started is ended by its id."""
+
+    def __init__(self, *assignments, plain_vendor="cyclonedds", launch_timeout_s=30):
+        self.run_directory = pathlib.Path(tempfile.mkdtemp(prefix="quorient-kill-"))
+        self.environment = dict(os.environ, QUORIENT_RUN_DIR=str(self.run_directory))
+        self.domain = 120 + int.from_bytes(os.urandom(2), "big") % 100
+        self.timeout_s = launch_timeout_s
+        self.started_again = []
+        self.stopped = []
+        settings = [word for assignment in ("expect=null", *assignments) for word in ("--set", assignment)]
+        self.launch = subprocess.Popen(
+            self.command("launch", CONFIGURATIONS / "demo.yaml", "--domain", self.domain, "--json", *settings),
+            env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        )
+        self.merged = self._record("voter_output", "cyclonedds", parse_voted)
+        self.plain = self._record("voted", plain_vendor, parse_voted)
+        self.truth = self._record("truth", "cyclonedds", parse_truth)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        for process in self.stopped:
+            self._signal(process, signal.SIGCONT)
+        for process in (self.launch, *self.started_again):
+            if process.poll() is None:
+                process.kill()
+            process.communicate()
+        for recording in (self.merged, self.plain, self.truth):
+            recording.stop()
+        shutil.rmtree(self.run_directory, ignore_errors=True)
+
+    def command(self, verb, *arguments):
+        return [str(BIN / "quorient"), verb, *map(str, arguments)]
+
+    def _record(self, topic, vendor, parse):
+        return Recording(self.command("echo", topic, "--json", "--domain", self.domain, "--dds", vendor), self.environment, parse)
+
+    def until(self, condition, what, timeout_s=None):
+        deadline = time.monotonic() + (timeout_s or self.timeout_s)
+        while not condition():
+            if time.monotonic() > deadline:
+                raise NotInTime(f"not within {timeout_s or self.timeout_s} s: {what}")
+            if self.launch.poll() is not None:
+                raise NotInTime(f"the run ended before: {what}")
+            time.sleep(0.01)
+
+    def until_running(self):
+        heard = (self.merged, self.plain, self.truth)
+        self.until(lambda: all(recording.newest for recording in heard), "all three listeners hear the pipeline")
+
+    def until_frame(self, frame):
+        """Returns at the moment when the publisher's frame is due, told from the fastest of the truths before it. @returns that frame."""
+        self.until(lambda: self.truth.newest and self.truth.newest.identity[1] >= frame - RATE_HZ / 4, f"frame {frame} is near")
+        epoch = self.truth.newest.identity[0]
+        start_s = min(truth.arrival_s - truth.identity[1] * INTERVAL_S for truth in self.truth.samples[-RATE_HZ:] if truth.identity[0] == epoch)
+        time.sleep(max(0.0, start_s + frame * INTERVAL_S - time.monotonic()))
+        return (epoch, int(frame))
+
+    def process_of(self, name):
+        """Process id of the newest child with this name; only children of this run's launch, and what this run started again."""
+        for again in reversed(self.started_again):
+            if again.poll() is None and again.args[again.args.index("--name") + 1] == name:
+                return again.pid
+        children = pathlib.Path(f"/proc/{self.launch.pid}/task/{self.launch.pid}/children").read_text().split()
+        for child in children:
+            if self._name_of(child) == name:
+                return int(child)
+        return None
+
+    def names(self):
+        children = pathlib.Path(f"/proc/{self.launch.pid}/task/{self.launch.pid}/children").read_text().split()
+        return [name for name in map(self._name_of, children) if name]
+
+    @staticmethod
+    def _words_of(process):
+        try:
+            return pathlib.Path(f"/proc/{process}/cmdline").read_text().split("\0")[:-1]
+        except (FileNotFoundError, ProcessLookupError):
+            return []
+
+    @classmethod
+    def _name_of(cls, process):
+        words = cls._words_of(process)
+        return words[words.index("--name") + 1] if "--name" in words and "quorient-" in words[0] else None
+
+    @staticmethod
+    def _signal(process, number):
+        try:
+            os.kill(process, number)
+        except ProcessLookupError:
+            pass
+
+    @staticmethod
+    def is_gone(process):
+        """Ended: no such process, or one that only waits to be collected."""
+        try:
+            return pathlib.Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
+        except (FileNotFoundError, ProcessLookupError):
+            return True
+
+    def kill(self, name):
+        self._signal(self.process_of(name), signal.SIGKILL)
+
+    def stop_for(self, names, duration_s):
+        """SIGSTOP, the time that the fault lasts, SIGCONT."""
+        self.stopped = [self.process_of(name) for name in names]
+        for process in self.stopped:
+            self._signal(process, signal.SIGSTOP)
+        time.sleep(duration_s)
+        for process in self.stopped:
+            self._signal(process, signal.SIGCONT)
+        self.stopped = []
+
+    def terminate(self, name):
+        """SIGTERM, and waits for the goodbye. @returns how to start it again."""
+        process = self.process_of(name)
+        words = self._words_of(process)
+        self._signal(process, signal.SIGTERM)
+        self.until(lambda: self.is_gone(process), f"{name} ends in order", 5)
+        return words
+
+    def start_again(self, words):
+        self.started_again.append(
+            subprocess.Popen(words, env=self.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        )
+
+    def finish(self):
+        """Ends the run in order. @returns the launch's summary; `end` is the last frame that is judged."""
+        epoch, sequence = self.truth.newest.identity
+        self.end = (epoch, sequence - END_OF_GRACE_FRAMES)
+        if self.launch.poll() is None:
+            self.launch.terminate()
+        text, self.words_of_launch = self.launch.communicate(timeout=15)
+        for recording in (self.merged, self.plain, self.truth):
+            recording.stop()
+        return json.loads(text)
+
+    def log_of(self, name):
+        path = self.run_directory / f"{name}.log"
+        return path.read_text() if path.exists() else ""

@@ -1,0 +1,83 @@
+"""Recordings of a running pipeline's topics, made by `quorient echo` in processes of their own."""
+import json
+import math
+import subprocess
+import threading
+import time
+from typing import NamedTuple
+
+FULL, DEGRADED, SINGLE, COASTING, LOST = 1, 2, 3, 4, 5
+HELD = (COASTING, LOST)
+
+
+class Truth(NamedTuple):
+    identity: tuple
+    attitude: list
+    faulty: int
+    arrival_s: float
+
+
+class Voted(NamedTuple):
+    identity: tuple
+    output_sequence: int
+    attitude: list
+    sigma_rad: float
+    reset_counter: int
+    voter: int
+    vouching: int
+    excluded: int
+    isolated: int
+    mode: int
+    level: int
+    arrival_s: float
+
+
+def parse_truth(sample, arrival_s):
+    return Truth((sample["epoch"], sample["sequence_number"]), sample["attitude"], sample["faulty_mask"], arrival_s)
+
+
+def parse_voted(sample, arrival_s):
+    return Voted(
+        (sample["epoch"], sample["sequence_number"]), sample["output_sequence"], sample["attitude"], sample["angle_sigma_rad"],
+        sample["reset_counter"], sample["voter"], sample["vouching_mask"], sample["excluded_mask"], sample["isolated_mask"],
+        sample["mode"], sample["level"], arrival_s,
+    )
+
+
+def angle(a, b):
+    """Geodesic angle of two quaternions [rad]; by the sine, since the cosine is blind below 1e-8."""
+    w = sum(x * y for x, y in zip(a, b))
+    x = a[0] * b[1] - a[1] * b[0] + a[2] * b[3] - a[3] * b[2]
+    y = a[0] * b[2] - a[2] * b[0] + a[3] * b[1] - a[1] * b[3]
+    z = a[0] * b[3] - a[3] * b[0] + a[1] * b[2] - a[2] * b[1]
+    return 2 * math.atan2(math.sqrt(x * x + y * y + z * z), abs(w))
+
+
+class Recording:
+    """Every sample of one topic since the recording began."""
+
+    def __init__(self, command, environment, parse):
+        self.samples = []
+        self._parse = parse
+        self._process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    @property
+    def newest(self):
+        return self.samples[-1] if self.samples else None
+
+    def stop(self):
+        if self._process.poll() is None:
+            self._process.terminate()
+        try:
+            self._process.wait(timeout=5)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+        self._reader.join(timeout=5)
+        self._process.stdout.close()
+
+    def _read(self):
+        for line in self._process.stdout:
+            if line.endswith("\n"):
+                self.samples.append(self._parse(json.loads(line), time.monotonic()))
