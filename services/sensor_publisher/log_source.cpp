@@ -14,6 +14,13 @@ namespace quorient::sensor {
 
 namespace {
 
+std::array<double, max_axes> gains(const system::SensorSettings& settings)
+{
+    std::array<double, max_axes> gain;
+    gain.fill(1.0);
+    return settings.source.log->calibration ? settings.source.log->calibration->gain : gain;
+}
+
 class LogSource final : public FrameSource {
 public:
     LogSource(std::unique_ptr<recording::Reader> reader, const geometry::SensorCluster& cluster, const ClusterDescription& description,
@@ -21,6 +28,7 @@ public:
         : reader_(std::move(reader)),
           description_(description),
           faults_(cluster, settings.source.scenario.seed),
+          gain_(gains(settings)),
           from_s_(settings.source.log->from_s),
           to_s_(settings.source.log->to_s.value_or(std::numeric_limits<double>::infinity()))
     {
@@ -76,7 +84,7 @@ private:
         frame_.description_revision = description_.revision;
         frame_.valid_mask = record_.valid_mask;
         for (std::size_t axis = 0; axis < description_.axis_count; ++axis)
-            frame_.increment[axis] = record_.increment[axis] - description_.bias[axis] * record_.interval_s;
+            frame_.increment[axis] = (record_.increment[axis] - description_.bias[axis] * record_.interval_s) / gain_[axis];
         truth_.attitude_known = record_.truth.has_value();
         if (record_.truth) truth_.attitude = *record_.truth;
         const double begin_s = static_cast<double>(record_.time_ns) * 1e-9 - record_.interval_s;
@@ -88,6 +96,7 @@ private:
     ClusterDescription description_;
     simulation::FaultInjector faults_;
     simulation::FrameAccumulator accumulator_;
+    std::array<double, max_axes> gain_;
     double from_s_;
     double to_s_;
     recording::RecordedFrame record_;
@@ -96,6 +105,18 @@ private:
     std::uint64_t next_sequence_ = 0;
     bool started_ = false;
 };
+
+/// What shows that two descriptions are not of the same sensors; nothing if axes and instruments agree.
+std::optional<std::string> difference(const ClusterDescription& calibrated, const ClusterDescription& log)
+{
+    if (calibrated.axis_count != log.axis_count) return fmt::format("{} axes, the log has {}", calibrated.axis_count, log.axis_count);
+    for (std::size_t axis = 0; axis < log.axis_count; ++axis) {
+        const auto theirs = runtime::text_of(calibrated.instrument_name[calibrated.instrument[axis]]);
+        const auto ours = runtime::text_of(log.instrument_name[log.instrument[axis]]);
+        if (!ours.empty() && theirs != ours) return fmt::format("axis {} is of instrument {}, in the log of {}", axis, theirs, ours);
+    }
+    return std::nullopt;
+}
 
 /// The log's own geometry with the biases and sigmas of its beginning, or the system file's with its noise.
 tl::expected<ClusterDescription, std::string> describe_log(recording::Reader& reader, const system::SensorSettings& settings,
@@ -108,11 +129,17 @@ tl::expected<ClusterDescription, std::string> describe_log(recording::Reader& re
                                                    description.axis_count, settings.cluster->size()));
         description = describe(*settings.cluster);
     }
+    const auto& calibration = settings.source.log->calibration;
+    if (calibration) {
+        if (const auto other = difference(calibration->description, description))
+            return tl::make_unexpected(fmt::format("{}: the calibration is of other sensors: {}", settings.source.log->file, *other));
+        description = calibration->description;
+    }
     if (settings.source.log->rest_s > 0) {
         const auto rest = recording::rest_statistics(reader, settings.source.log->rest_s);
         if (!rest) return tl::make_unexpected(rest.error());
         description.bias = rest->bias_rad_s;
-        description.sigma = rest->sigma_rad;
+        if (!calibration) description.sigma = rest->sigma_rad;
     }
     description.epoch = epoch;
     description.revision = 1;

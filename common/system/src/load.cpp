@@ -33,6 +33,12 @@ ProcessSettings process_of(const System& system, const ProcessSettings& base, st
     return process;
 }
 
+/// The networks of a process on another host are not this host's to judge.
+bool runs_here(const Overrides& overrides, const ProcessSettings& process)
+{
+    return overrides.process.empty() || overrides.process == process.node.name;
+}
+
 void parse_detection(Section section, DetectorProcess& detector)
 {
     auto& detection = detector.detection;
@@ -104,7 +110,7 @@ void parse_lane(Section lane, const System& system, const ProcessSettings& base,
     integrator.integration.unit = system.unit;
     integrator.integration.lane = place + 1;
     parse_integration(lane.section("integrator"), integrator);
-    check_bus(lane, own);
+    if (runs_here(overrides, detector.process) || runs_here(overrides, integrator.process)) check_bus(lane, own);
     lane.finish();
 }
 
@@ -159,7 +165,7 @@ void parse_voters(Section& root, System& system, const ProcessSettings& base, co
         voter.voting = voting;
         voter.voting.voter = place + 1;
         if (const auto ok = voting::check(voter.voting); !ok && !system.lanes.empty()) section.problem("name", ok.error());
-        check_bus(section, own);
+        if (runs_here(overrides, voter.process)) check_bus(section, own);
         section.finish();
     }
 }
@@ -188,7 +194,7 @@ void parse_sensor(Section section, System& system, const ProcessSettings& base, 
     parse_process(section, overrides, own);
     system.sensor.process = process_of(system, own, "sensor", sensor_service, ServiceRole::sensor);
     section.number("wait_s", system.sensor.wait_s, {.lowest = 0, .unit = "s"});
-    check_bus(section, own);
+    if (runs_here(overrides, system.sensor.process)) check_bus(section, own);
     section.finish();
 }
 

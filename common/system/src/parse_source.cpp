@@ -114,6 +114,13 @@ void parse_log(Section& source, System& system)
     // Where the file itself states the axes, it states their noise too.
     if (system.sensor.cluster) log.rest_s = 0;
     source.number("rest_s", log.rest_s, {.lowest = 0, .unit = "s"});
+    std::string calibration;
+    source.text("calibration", calibration);
+    if (!calibration.empty()) {
+        if (system.sensor.cluster) source.problem("calibration", "states the axes, as unit.layout or unit.axes do: keep one of them");
+        if (auto loaded = calibration::load_cluster(calibration)) log.calibration = std::move(*loaded);
+        else source.problem("calibration", loaded.error());
+    }
     source.number("from_s", log.from_s, runtime::not_negative);
     source.number("to_s", log.to_s, runtime::above_zero);
     system.sensor.source.log = std::move(log);

@@ -2,6 +2,7 @@
 
 #include "quorient/attitude/integrator.hpp"
 #include "quorient/bus/settings.hpp"
+#include "quorient/calibration/cluster_file.hpp"
 #include "quorient/fdi/settings.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"
 #include "quorient/runtime/node.hpp"
@@ -29,7 +30,8 @@ struct ProcessSettings {
 /// A log played as if the sensors were here.
 struct LogSettings {
     std::string file;
-    double rest_s = 10;  ///< the log's beginning, at rest: biases and sigmas come from it
+    double rest_s = 10;  ///< the log's beginning, at rest: biases and (without a calibration) sigmas come from it
+    std::optional<calibration::CalibratedCluster> calibration;  ///< axes, gains and noise of these very sensors
     double from_s = 0;
     std::optional<double> to_s;
 };
@@ -112,6 +114,7 @@ struct System {
 struct Overrides {
     std::optional<Vendor> dds;  ///< of every process
     std::optional<std::uint32_t> domain;
+    std::string process;             ///< the one that this host runs: only its network is checked; empty = every one
     std::vector<std::string>
         set;  ///< `source.speed=2`, `source.faults+=axis=1,kind=zero`: values of the file, as runtime::assign takes them
 };
