@@ -19,14 +19,24 @@ tl::expected<FaultMonitor, std::string> FaultMonitor::make(std::unique_ptr<Detec
 {
     const auto machine = VerdictMachine::make(verdict, cluster.size());
     if (!machine) return tl::unexpected(machine.error());
-    return FaultMonitor(std::move(detector), *machine, cluster, verdict.readmit_after_s);
+    FaultMonitor monitor(std::move(detector), *machine, cluster.all());
+    if (verdict.readmit_after_s) monitor.readmission_.emplace(cluster, *verdict.readmit_after_s);
+    return monitor;
 }
 
-FaultMonitor::FaultMonitor(std::unique_ptr<Detector> detector, const VerdictMachine& machine, const geometry::SensorCluster& cluster,
-                           std::optional<double> readmit_after_s)
-    : detector_(std::move(detector)), machine_(machine), all_(cluster.all())
+tl::expected<FaultMonitor, std::string> FaultMonitor::make(std::unique_ptr<Detector> detector, const VerdictSettings& verdict,
+                                                           std::size_t channels)
 {
-    if (readmit_after_s) readmission_.emplace(cluster, *readmit_after_s);
+    if (verdict.readmit_after_s)
+        return tl::unexpected(std::string("readmit_after_s: channels without directions are readmitted by command only"));
+    const auto machine = VerdictMachine::make(verdict, channels, 1);
+    if (!machine) return tl::unexpected(machine.error());
+    return FaultMonitor(std::move(detector), *machine, all_axes(channels));
+}
+
+FaultMonitor::FaultMonitor(std::unique_ptr<Detector> detector, const VerdictMachine& machine, AxisMask all)
+    : detector_(std::move(detector)), machine_(machine), all_(all)
+{
 }
 
 const FaultVerdict& FaultMonitor::assess(const SensorFrame& frame)

@@ -23,10 +23,12 @@ std::uint64_t guarded(std::uint64_t onset, unsigned guard)
 
 }  // namespace
 
-tl::expected<VerdictMachine, std::string> VerdictMachine::make(const VerdictSettings& settings, std::size_t axis_count)
+tl::expected<VerdictMachine, std::string> VerdictMachine::make(const VerdictSettings& settings, std::size_t axis_count,
+                                                               std::size_t least_axes)
 {
-    if (axis_count < 3 || axis_count > max_axes)
-        return tl::unexpected("a verdict needs 3 to " + std::to_string(max_axes) + " axes, got " + std::to_string(axis_count));
+    if (axis_count < least_axes || axis_count > max_axes)
+        return tl::unexpected("a verdict needs " + std::to_string(least_axes) + " to " + std::to_string(max_axes) + " axes, got " +
+                              std::to_string(axis_count));
     if (settings.confirm_window < 1 || settings.confirm_window > max_window)
         return tl::unexpected("the confirmation window must be 1 to " + std::to_string(max_window) + " frames, got " +
                               std::to_string(settings.confirm_window));
@@ -35,10 +37,11 @@ tl::expected<VerdictMachine, std::string> VerdictMachine::make(const VerdictSett
                               std::to_string(settings.confirm_required));
     if (settings.readmit_after_s && !(*settings.readmit_after_s > 0))
         return tl::unexpected("readmit_after_s must be above 0, got " + std::to_string(*settings.readmit_after_s));
-    return VerdictMachine(settings, axis_count);
+    return VerdictMachine(settings, axis_count, least_axes);
 }
 
-VerdictMachine::VerdictMachine(const VerdictSettings& settings, std::size_t axis_count) : settings_(settings), all_(all_axes(axis_count))
+VerdictMachine::VerdictMachine(const VerdictSettings& settings, std::size_t axis_count, std::size_t least_axes)
+    : settings_(settings), all_(all_axes(axis_count)), least_axes_(static_cast<int>(least_axes))
 {
     verdict_.state = static_cast<std::uint8_t>(VerdictState::warming_up);
     verdict_.working_mask = all_;
@@ -203,7 +206,7 @@ void VerdictMachine::publish(const Evidence& newest, const Assessment& assessmen
     auto state = verdict_.isolated_mask != 0 ? VerdictState::isolated : VerdictState::healthy;
     if (broken_ != 0) state = VerdictState::suspect;
     if (const Evidence* suspicion = latest_suspicion()) state = publish_suspicion(*suspicion);
-    if (std::popcount(verdict_.working_mask) < 3) state = VerdictState::blind;
+    if (std::popcount(verdict_.working_mask) < least_axes_) state = VerdictState::blind;
     const bool learning = newest.outcome == Outcome::warming_up && state == VerdictState::healthy;
     if (learning || frames_ <= settings_.warm_up_frames) state = VerdictState::warming_up;
     verdict_.state = static_cast<std::uint8_t>(state);

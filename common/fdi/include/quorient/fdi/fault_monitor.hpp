@@ -27,6 +27,11 @@ public:
     static tl::expected<FaultMonitor, std::string> make(std::unique_ptr<Detector> detector, const VerdictSettings& verdict,
                                                         const geometry::SensorCluster& cluster);
 
+    /// The same for channels that are no directions in space (VESSEL_RATES): each may be the last one left.
+    /// @returns also that readmission by itself is asked for, which needs directions.
+    static tl::expected<FaultMonitor, std::string> make(std::unique_ptr<Detector> detector, const VerdictSettings& verdict,
+                                                        std::size_t channels);
+
     /// The verdict of this frame. Frames have passed the intake: in order, finite, of the described cluster. A frame that is not
     /// newer than the last one changes nothing. `detector` and `stamp_ns` are left to the process.
     const FaultVerdict& assess(const SensorFrame& frame);
@@ -41,8 +46,7 @@ public:
     const Assessment& assessment() const { return assessment_; }  ///< of the newest frame
 
 private:
-    FaultMonitor(std::unique_ptr<Detector> detector, const VerdictMachine& machine, const geometry::SensorCluster& cluster,
-                 std::optional<double> readmit_after_s);
+    FaultMonitor(std::unique_ptr<Detector> detector, const VerdictMachine& machine, AxisMask all);
 
     Measurement measurement_of(const SensorFrame& frame) const;
     void after_change(AxisMask before);

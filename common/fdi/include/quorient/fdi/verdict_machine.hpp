@@ -25,8 +25,11 @@ class VerdictMachine {
 public:
     static constexpr unsigned max_window = 32;
 
-    /// @returns what is wrong with the settings or the number of axes (3 to 24).
-    static tl::expected<VerdictMachine, std::string> make(const VerdictSettings& settings, std::size_t axis_count);
+    /// @param least_axes  with fewer left the verdict is BLIND: 3 where they are directions in space, 1 where a model of the motion
+    ///                    stands behind each.
+    /// @returns what is wrong with the settings or the number of axes (least_axes to 24).
+    static tl::expected<VerdictMachine, std::string> make(const VerdictSettings& settings, std::size_t axis_count,
+                                                          std::size_t least_axes = 3);
 
     /// The state after one more frame. A frame that is not newer than the last one changes nothing.
     /// A new epoch starts the sequences again: what is excluded is then excluded from its sequence 0.
@@ -57,7 +60,7 @@ private:
         void add(AxisMask set);
     };
 
-    VerdictMachine(const VerdictSettings& settings, std::size_t axis_count);
+    VerdictMachine(const VerdictSettings& settings, std::size_t axis_count, std::size_t least_axes);
 
     Evidence evidence_of(const Assessment& assessment) const;
     void begin_epoch(std::uint64_t epoch);
@@ -78,6 +81,7 @@ private:
 
     VerdictSettings settings_;
     AxisMask all_;
+    int least_axes_;
     FaultVerdict verdict_;
     bool started_ = false;
     std::uint64_t frames_ = 0;             ///< of this epoch

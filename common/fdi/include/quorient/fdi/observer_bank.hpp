@@ -1,0 +1,138 @@
+#pragma once
+
+#include "quorient/fdi/linear_plant.hpp"
+#include "quorient/fdi/noise.hpp"
+#include "quorient/messages/limits.hpp"
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+#include <vector>
+
+namespace quorient::fdi {
+
+enum class ObserverScheme : std::uint8_t {
+    directional,  ///< paper 001: observer i's error moves in one direction under a fault of channel i; two states, both measured
+    blind,        ///< observer i ignores channel i: its other residuals stay 0 under a fault there; any linear plant
+};
+
+tl::expected<ObserverScheme, std::string> parse_observer_scheme(std::string_view word);
+std::string_view to_string(ObserverScheme scheme);
+
+struct ObserverSettings {
+    LinearPlant plant;
+    ObserverScheme scheme = ObserverScheme::blind;
+    std::vector<Poles> poles;   ///< of each channel's observer; one set for all is enough. directional: {along the fault, other}
+    std::vector<double> sigma;  ///< noise of one sample of each channel, in its unit; one for all is enough; empty = 0
+    double model_error = 0;     ///< bound on the relative error of every entry of A and B
+    double false_alarm_probability = default_false_alarm_probability;  ///< of one frame
+    std::optional<double> threshold;  ///< of every residual and metric, in the channels' unit, in place of what noise and model error give
+    double least_contrast = 1.5;      ///< directional: a bank whose right metric does not exceed the other one so many times is refused
+};
+
+/// A number of observers that run side by side on the same samples: what each expects, and how far the samples are from it.
+///
+/// Observer:  xh' = (A - K C) xh + B u + K y,  r = y - C xh, with y and u held over an interval (exact discretisation).
+/// For y = x + f the residual is r = C e + f, feedthrough included. [paper 001, eqs 10-12 corrected, methods.md 001]
+///
+/// Limit of a residual: z sigma_r + model_error * sum over the entries p of A and B of |dr/dp| |p|. sigma_r is the residual's stationary
+/// standard deviation (discrete Lyapunov equation), z the normal quantile that shares the false-alarm probability among all
+/// residuals compared in one frame; dr/dp runs along with the observer, so the limit breathes with the motion.
+///
+/// Not guaranteed: samples are held, so a moving plant leaves residuals of the order K x' h even without fault (1e-5 in the paper's run
+/// at 100 Hz); model_error is what covers them. The model error counts to first order; a plant that is wrong in its structure raises alarms.
+class ObserverBank {
+public:
+    using State = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, max_states, 1>;
+    using Outputs = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, max_outputs, 1>;
+    using Inputs = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, max_inputs, 1>;
+
+    /// Observers: one per channel; for the blind scheme also one per pair of channels where the rest allows it.
+    /// @returns what is wrong: matrix sizes, poles, a channel without which the plant is not detectable, gains whose directions or contrast
+    ///          would name the wrong channel, no noise, model error or threshold to compare with.
+    static tl::expected<ObserverBank, std::string> make(const ObserverSettings& settings, double interval_s);
+
+    std::size_t size() const { return observers_.size(); }
+    std::size_t channels() const { return static_cast<std::size_t>(plant_.outputs()); }
+    std::size_t inputs() const { return static_cast<std::size_t>(plant_.inputs()); }
+    ObserverScheme scheme() const { return scheme_; }
+
+    /// The observer of these channels (directional: made for their fault; blind: without them).
+    std::optional<std::size_t> find(AxisMask channels) const;
+
+    const Eigen::MatrixXd& gain(std::size_t observer) const { return observers_[observer].gain; }
+    Poles poles(std::size_t observer) const;
+
+    /// All observers start from the state that the samples tell (least squares), or 0 where they do not.
+    void start(const Outputs& samples);
+
+    /// Compares the samples with what was expected of them. Channels that are not `valid` have residual 0.
+    void compare(const Outputs& samples, AxisMask valid);
+
+    /// Goes on by one interval with what was compared last and this input.
+    void advance(const Inputs& input);
+
+    const Outputs& residual(std::size_t observer) const { return observers_[observer].residual; }
+    const Outputs& limit(std::size_t observer) const { return observers_[observer].limit; }
+
+    /// C_i = |l_i' r_i| / |l_i| of eq (25), l_i = C K_i e_i, and its limit. Directional scheme.
+    double metric(std::size_t observer) const;
+    double metric_limit(std::size_t observer) const { return observers_[observer].metric_limit; }
+
+    /// Frames until a wrong start has decayed to 1/1000 in all observers; 0 where the samples tell the whole state.
+    std::uint64_t settling_frames() const { return settling_frames_; }
+
+private:
+    static constexpr int max_parameters = max_states * (max_states + max_inputs);
+    using StateMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, max_states, max_states>;
+    using Sensitivity = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, max_states, max_parameters>;
+    using OutputSensitivity = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, max_outputs, max_parameters>;
+
+    using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, max_states, max_outputs>;
+
+    struct Observer {
+        AxisMask channels = 0;
+        Eigen::MatrixXd gain;  ///< K, to be shown
+        SmallMatrix correct;   ///< K, to be used: not on the heap, nor is anything made of it
+        StateMatrix state;     ///< exp((A - K C) h)
+        StateMatrix drive;     ///< integral of exp((A - K C) s) over the interval
+        State estimate;        ///< xh
+        Outputs residual;
+        Outputs limit;
+        Outputs noise_limit;  ///< z sigma_r
+        Outputs direction;    ///< l / |l|; directional
+        double metric_noise_limit = 0;
+        double metric_limit = 0;
+        Sensitivity sensitivity;  ///< dxh/dp |p|, one column per entry of A and B that is not 0
+    };
+
+    /// One entry of A (column < n) or B that may be wrong.
+    struct Parameter {
+        Eigen::Index row = 0;
+        Eigen::Index column = 0;
+        double size = 0;
+    };
+
+    ObserverBank(const ObserverSettings& settings, double interval_s);
+    tl::expected<void, std::string> design(const ObserverSettings& settings);
+    tl::expected<void, std::string> design_directional(const ObserverSettings& settings);
+    tl::expected<void, std::string> design_blind(const ObserverSettings& settings);
+    void add(AxisMask channels, const Eigen::MatrixXd& gain);
+    void set_noise_limits(const ObserverSettings& settings);
+    void set_limits(Observer& observer) const;
+
+    LinearPlant plant_;
+    SmallMatrix b_, c_;
+    ObserverScheme scheme_;
+    double interval_s_;
+    double model_error_;
+    std::optional<double> threshold_;
+    std::uint64_t settling_frames_ = 0;
+    SmallMatrix from_samples_;  ///< pseudo-inverse of C
+    std::vector<Parameter> parameters_;
+    std::vector<Observer> observers_;
+};
+
+}  // namespace quorient::fdi

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "quorient/fdi/detector.hpp"
+#include "quorient/fdi/observer_bank.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <tl/expected.hpp>
+
+namespace quorient::fdi {
+
+/// Fault detection by observers, behind the interface of all methods. Channels are the axes; a channel's sample is its increment divided by
+/// the interval, the known inputs are those of the frame.
+///
+/// Directional: the channel with the largest metric above its limit; where another one's is above its limit too and within `margin`
+/// of it, both are candidates.
+/// Blind: channel i is a candidate if all that the observer without i expects of the other channels comes true. All are: healthy. Exactly
+/// one is: isolated. Several: ambiguous. None: a pair, where an observer without it explains the rest; else blind.
+///
+/// An input that is not finite (a rudder stream that stopped) makes the verdict `blind`: without it nothing can be expected. When it comes
+/// back, and after a gap of more than 20 frames, the observers start again.
+class ObserverDetector final : public Detector {
+public:
+    static tl::expected<std::unique_ptr<ObserverDetector>, std::string> make(const ObserverSettings& settings, double interval_s,
+                                                                             double margin = 1.0);
+
+    void assess(const Measurement& measurement, Assessment& assessment) override;
+    void exclude(AxisMask excluded) override { excluded_ = excluded; }
+    unsigned detectable_remaining() const override;
+    void reset() override { last_.reset(); }
+
+    const ObserverBank& bank() const { return bank_; }
+
+private:
+    ObserverDetector(ObserverBank bank, double interval_s, double margin) : bank_(std::move(bank)), interval_s_(interval_s), margin_(margin)
+    {
+    }
+
+    bool read_input(const Measurement& measurement);
+    void follow_to(const Measurement& measurement);
+    void judge_directional(Assessment& assessment) const;
+    void judge_blind(Assessment& assessment) const;
+    void judge_last(AxisMask working, Assessment& assessment) const;
+    double worst(std::size_t observer, AxisMask channels) const;
+    void report(std::size_t observer, double interval_s, Assessment& assessment) const;
+    AxisMask working() const { return all_axes(bank_.channels()) & ~excluded_; }
+
+    ObserverBank bank_;
+    double interval_s_;
+    double margin_;
+    AxisMask excluded_ = 0;
+    std::optional<Identity> last_;
+    std::uint64_t frames_ = 0;  ///< since the observers started
+    ObserverBank::Outputs samples_;
+    ObserverBank::Inputs input_;
+};
+
+}  // namespace quorient::fdi

@@ -1,0 +1,179 @@
+#include "quorient/fdi/observer_detector.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace quorient::fdi {
+namespace {
+
+/// Over a longer gap held samples say nothing any more.
+constexpr std::uint64_t longest_gap = 20;
+
+}  // namespace
+
+tl::expected<std::unique_ptr<ObserverDetector>, std::string> ObserverDetector::make(const ObserverSettings& settings, double interval_s,
+                                                                                    double margin)
+{
+    auto bank = ObserverBank::make(settings, interval_s);
+    if (!bank) return tl::unexpected(bank.error());
+    if (!(margin >= 1)) return tl::unexpected("margin must be 1 or more, got " + std::to_string(margin));
+    return std::unique_ptr<ObserverDetector>(new ObserverDetector(std::move(*bank), interval_s, margin));
+}
+
+unsigned ObserverDetector::detectable_remaining() const
+{
+    const AxisMask left = working();
+    if (left == 0) return 0;
+    if (excluded_ == 0) return 1;
+    return bank_.scheme() == ObserverScheme::blind && bank_.find(excluded_) ? 1 : 0;
+}
+
+void ObserverDetector::assess(const Measurement& measurement, Assessment& assessment)
+{
+    assessment = {};
+    assessment.threshold = 1;
+    if (!read_input(measurement)) {
+        assessment.outcome = Outcome::blind;
+        last_.reset();
+        return;
+    }
+    follow_to(measurement);
+    const AxisMask judged = measurement.valid & all_axes(bank_.channels()) & ~excluded_;
+    bank_.compare(samples_, judged | (measurement.valid & excluded_));
+    if (frames_ < bank_.settling_frames()) assessment.outcome = Outcome::warming_up;
+    else if (bank_.scheme() == ObserverScheme::directional) judge_directional(assessment);
+    else judge_blind(assessment);
+    bank_.advance(input_);
+    last_ = measurement.identity;
+    ++frames_;
+}
+
+bool ObserverDetector::read_input(const Measurement& measurement)
+{
+    if (measurement.known_input.size() < bank_.inputs()) return false;
+    input_.resize(static_cast<Eigen::Index>(bank_.inputs()));
+    for (Eigen::Index input = 0; input < input_.size(); ++input) input_(input) = measurement.known_input[static_cast<std::size_t>(input)];
+    return input_.allFinite();
+}
+
+/// Brings the observers to this frame; frames that are missing are bridged with what was last known.
+void ObserverDetector::follow_to(const Measurement& measurement)
+{
+    samples_.setZero(static_cast<Eigen::Index>(bank_.channels()));
+    for (Eigen::Index channel = 0; channel < samples_.size(); ++channel) {
+        const auto axis = static_cast<std::size_t>(channel);
+        if (has_axis(measurement.valid, axis)) samples_(channel) = measurement.increment[axis] / measurement.interval_s;
+    }
+    const bool follows = last_ && measurement.identity.epoch == last_->epoch && measurement.identity.sequence > last_->sequence &&
+                         measurement.identity.sequence - last_->sequence <= longest_gap;
+    if (!follows) {
+        bank_.start(samples_);
+        frames_ = 0;
+        return;
+    }
+    for (std::uint64_t missing = last_->sequence + 1; missing < measurement.identity.sequence; ++missing) {
+        bank_.compare(samples_, 0);
+        bank_.advance(input_);
+    }
+}
+
+void ObserverDetector::judge_directional(Assessment& assessment) const
+{
+    assessment.outcome = Outcome::healthy;
+    if (excluded_ != 0) return;  // both observers use both channels: nothing can be compared any more
+    double best = 0;
+    std::size_t channel = 0;
+    for (std::size_t observer = 0; observer < bank_.size(); ++observer) {
+        const double ratio = bank_.metric(observer) / bank_.metric_limit(observer);
+        if (ratio <= best) continue;
+        best = ratio;
+        channel = observer;
+    }
+    report(channel, interval_s_, assessment);
+    assessment.statistic = best;
+    if (best <= 1) return;
+    assessment.outcome = Outcome::isolated;
+    assessment.isolated = axis_bit(channel);
+    const std::size_t other = 1 - channel;
+    const double rival = bank_.metric(other) / bank_.metric_limit(other);
+    if (rival <= 1 || rival * margin_ <= best) return;
+    assessment.outcome = Outcome::ambiguous;
+    assessment.isolated = 0;
+    assessment.add_candidate(axis_bit(channel));
+    assessment.add_candidate(axis_bit(other));
+}
+
+void ObserverDetector::judge_blind(Assessment& assessment) const
+{
+    const AxisMask left = working();
+    if (std::popcount(left) < 2) {
+        judge_last(left, assessment);
+        return;
+    }
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t channel = 0; channel < bank_.channels(); ++channel) {
+        const auto observer = bank_.find(excluded_ | axis_bit(channel));
+        if (!has_axis(left, channel) || !observer) continue;
+        const double ratio = worst(*observer, left & ~axis_bit(channel));
+        assessment.statistic = std::max(assessment.statistic, ratio);
+        if (ratio <= 1) assessment.add_candidate(axis_bit(channel));
+        if (ratio >= least) continue;
+        least = ratio;
+        report(*observer, interval_s_, assessment);
+    }
+    if (assessment.statistic <= 1) {
+        assessment.outcome = Outcome::healthy;
+        assessment.candidate_count = 0;
+        return;
+    }
+    for (std::size_t i = 0; assessment.candidate_count == 0 && i < bank_.channels(); ++i) {
+        for (std::size_t j = i + 1; j < bank_.channels(); ++j) {
+            const AxisMask pair = axis_bit(i) | axis_bit(j);
+            const auto observer = excluded_ == 0 ? bank_.find(pair) : std::nullopt;
+            if (observer && std::popcount(left) > 3 && worst(*observer, left & ~pair) <= 1) assessment.add_candidate(pair);
+        }
+    }
+    assessment.outcome = assessment.candidate_count == 0   ? Outcome::blind
+                         : assessment.candidate_count == 1 ? Outcome::isolated
+                                                           : Outcome::ambiguous;
+    if (assessment.outcome != Outcome::isolated) return;
+    assessment.isolated = assessment.candidate[0];
+    assessment.candidate_count = 0;
+}
+
+/// One channel is left: the model alone can contradict it.
+void ObserverDetector::judge_last(AxisMask left, Assessment& assessment) const
+{
+    const auto observer = bank_.find(excluded_);
+    assessment.outcome = left == 0 || !observer ? Outcome::blind : Outcome::healthy;
+    if (assessment.outcome == Outcome::blind) return;
+    report(*observer, interval_s_, assessment);
+    assessment.statistic = worst(*observer, left);
+    if (assessment.statistic <= 1) return;
+    assessment.outcome = Outcome::isolated;
+    assessment.isolated = left;
+}
+
+double ObserverDetector::worst(std::size_t observer, AxisMask channels) const
+{
+    double ratio = 0;
+    for (std::size_t channel = 0; channel < bank_.channels(); ++channel) {
+        if (!has_axis(channels, channel)) continue;
+        const auto row = static_cast<Eigen::Index>(channel);
+        ratio = std::max(ratio, std::abs(bank_.residual(observer)(row)) / bank_.limit(observer)(row));
+    }
+    return ratio;
+}
+
+void ObserverDetector::report(std::size_t observer, double interval_s, Assessment& assessment) const
+{
+    for (std::size_t channel = 0; channel < bank_.channels(); ++channel) {
+        const auto row = static_cast<Eigen::Index>(channel);
+        assessment.residual[channel] = bank_.residual(observer)(row) * interval_s;
+        assessment.bound[channel] = bank_.limit(observer)(row) * interval_s;
+    }
+}
+
+}  // namespace quorient::fdi

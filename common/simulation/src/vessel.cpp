@@ -1,0 +1,137 @@
+#include "quorient/simulation/vessel.hpp"
+
+#include "counter_noise.hpp"
+
+#include <fmt/format.h>
+#include <Eigen/LU>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+namespace quorient::simulation {
+namespace {
+
+constexpr std::uint64_t noise_stream = 1'000'000;
+
+/// The channels as the fault injector sees them: each its own instrument, no direction that anything here would use.
+geometry::SensorCluster channels_of(const VesselScenario& scenario)
+{
+    const Eigen::Index count = scenario.model.c.rows();
+    geometry::SensorCluster cluster;
+    cluster.axes = geometry::Axes::Zero(count, 3);
+    cluster.sigma = geometry::AxisVector::Constant(count, scenario.noise * scenario.interval_s);
+    cluster.quantum = geometry::AxisVector::Zero(count);
+    cluster.range = geometry::AxisVector::Zero(count);
+    cluster.interval_s = scenario.interval_s;
+    cluster.kind = SensorKind::vessel_rates;
+    for (Eigen::Index channel = 0; channel < count; ++channel) {
+        cluster.instrument.push_back(static_cast<std::size_t>(channel));
+        cluster.instrument_name.push_back(fmt::format("channel{}", channel));
+    }
+    return cluster;
+}
+
+tl::expected<void, std::string> check_size(const char* name, const Eigen::MatrixXd& matrix, Eigen::Index rows, Eigen::Index columns)
+{
+    if (matrix.rows() == rows && matrix.cols() == columns && matrix.allFinite()) return {};
+    return tl::unexpected(fmt::format("{} must be {} x {} and finite, got {} x {}", name, rows, columns, matrix.rows(), matrix.cols()));
+}
+
+}  // namespace
+
+tl::expected<VesselModel, std::string> nomoto(const VesselCoefficients& c)
+{
+    Eigen::Matrix2d mass, damping;
+    mass << c.mass - c.y_v_dot, c.mass * c.centre_of_mass_x - c.y_d_dot, c.mass * c.centre_of_mass_x - c.n_v_dot, c.inertia - c.n_d_dot;
+    damping << -c.y_v, c.mass * c.speed - c.y_d, -c.n_v, c.mass * c.centre_of_mass_x * c.speed - c.n_d;
+    const Eigen::Vector2d rudder(c.y_rudder, c.n_rudder);
+    if (!mass.allFinite() || !damping.allFinite() || !rudder.allFinite())
+        return tl::unexpected(std::string("a coefficient of the vessel is not finite"));
+    const Eigen::FullPivLU<Eigen::Matrix2d> lu(mass);
+    if (!lu.isInvertible())
+        return tl::unexpected(
+            std::string("the vessel's mass matrix is singular: check mass, inertia, centre_of_mass_x and the added masses"));
+    return VesselModel{-lu.solve(damping), lu.solve(rudder), Eigen::Matrix2d::Identity()};
+}
+
+std::vector<FaultSpec> paper_faults()
+{
+    FaultSpec gyro;
+    gyro.kind = FaultKind::bias;
+    gyro.axes = axis_bit(1);
+    gyro.value = 0.01;
+    gyro.start_s = 20;
+    gyro.end_s = 30;
+    FaultSpec accelerometer = gyro;
+    accelerometer.axes = axis_bit(0);
+    accelerometer.start_s = 50;
+    accelerometer.end_s = 70;
+    return {gyro, accelerometer};
+}
+
+tl::expected<void, std::string> check(const VesselScenario& scenario)
+{
+    const Eigen::Index n = scenario.model.a.rows();
+    const Eigen::Index channels = scenario.model.c.rows();
+    if (n < 1) return tl::unexpected(std::string("A is empty"));
+    if (channels < 1 || channels > static_cast<Eigen::Index>(max_axes))
+        return tl::unexpected(fmt::format("C must have 1 to {} rows", max_axes));
+    if (auto sized = check_size("A", scenario.model.a, n, n); !sized) return sized;
+    if (auto sized = check_size("B", scenario.model.b, n, 1); !sized) return sized;
+    if (auto sized = check_size("C", scenario.model.c, channels, n); !sized) return sized;
+    if (!(scenario.interval_s > 0) || !std::isfinite(scenario.interval_s))
+        return tl::unexpected(std::string("the interval must be above 0 s"));
+    if (!(scenario.duration_s >= 0) || !(scenario.duration_s / scenario.interval_s < 1e9))
+        return tl::unexpected(std::string("the duration must be from 0 s to a billion intervals"));
+    if (!(scenario.noise >= 0) || !std::isfinite(scenario.noise)) return tl::unexpected(std::string("the noise must be 0 or more"));
+    if (!(scenario.rudder_period_s > 0) || !std::isfinite(scenario.rudder_rad))
+        return tl::unexpected(std::string("the rudder needs a finite amplitude and a period above 0 s"));
+    for (const FaultSpec& fault : scenario.faults) {
+        if (auto resolved = resolve(fault, channels_of(scenario)); !resolved) return tl::unexpected(resolved.error());
+    }
+    return {};
+}
+
+SimulatedVessel::SimulatedVessel(const VesselScenario& scenario)
+    : scenario_(scenario),
+      hold_(geometry::zero_order_hold(scenario.model.a, scenario.model.b, scenario.interval_s)),
+      faults_(channels_of(scenario), scenario.seed),
+      state_(Eigen::VectorXd::Zero(scenario.model.a.rows())),
+      frames_(static_cast<std::uint64_t>(std::llround(scenario.duration_s / scenario.interval_s)) + 1)
+{
+    for (const FaultSpec& fault : scenario.faults) {
+        [[maybe_unused]] const auto added = faults_.add(fault);
+        assert(added && "the scenario is to be checked first");
+    }
+}
+
+bool SimulatedVessel::next(SensorFrame& frame, Eigen::VectorXd& state)
+{
+    if (sequence_ >= frames_) return false;
+    const Eigen::Index channels = scenario_.model.c.rows();
+    const double time = time_s();
+    const Eigen::VectorXd sample = scenario_.model.c * state_;
+    frame = {};
+    frame.sequence = sequence_;
+    frame.sample_time_ns = std::llround(time * 1e9);
+    frame.interval_s = scenario_.interval_s;
+    frame.kind = static_cast<std::uint8_t>(SensorKind::vessel_rates);
+    frame.axis_count = static_cast<std::uint8_t>(channels);
+    frame.valid_mask = all_axes(static_cast<std::size_t>(channels));
+    for (Eigen::Index channel = 0; channel < channels; ++channel) {
+        double value = sample(channel);
+        if (scenario_.noise > 0) {
+            value += scenario_.noise * gaussian(scenario_.seed, noise_stream + static_cast<std::uint64_t>(channel), sequence_);
+        }
+        frame.increment[static_cast<std::size_t>(channel)] = value * scenario_.interval_s;
+    }
+    frame.known_input[0] = scenario_.rudder_rad * std::sin(2 * std::numbers::pi * time / scenario_.rudder_period_s);
+    faults_.apply(frame, time);
+
+    state = state_;
+    state_ = hold_.state * state_ + hold_.input * frame.known_input[0];
+    ++sequence_;
+    return true;
+}
+
+}  // namespace quorient::simulation
