@@ -12,7 +12,8 @@ int run(int argc, char** argv)
     const auto options = runtime::parse_options(argc, argv, "Integrates the trusted axes: one attitude per frame.", "");
     if (!options) return options.error().exit_code;
 
-    const auto system = system::load(options->system_file, {.dds = options->dds, .domain = options->domain, .set = options->set});
+    const auto system =
+        system::load(options->system_file, {.dds = options->dds, .domain = options->domain, .process = options->name, .set = options->set});
     if (!system) return runtime::report(system.error());
 
     const auto settings = system->integrator(options->name);

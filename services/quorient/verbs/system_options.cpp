@@ -8,7 +8,11 @@ void BusOptions::add_to(CLI::App& verb)
 {
     verb.add_option("--dds", dds, "fastdds or cyclonedds")->capture_default_str();
     verb.add_option("--domain", domain, "DDS domain")->capture_default_str();
-    verb.add_option("--interface", interface, "Network interface by name, address or subnet")->capture_default_str();
+    verb.add_option("--interface", interface, "Network interface by name, address or subnet; '' = the vendor's choice")
+        ->capture_default_str();
+    verb.add_option("--peer", peers, "IPv4 address to look for peers at, in place of multicast (repeatable)")
+        ->type_name("ADDRESS")
+        ->allow_extra_args(false);
     verb.add_option("--unit", unit, "Unit id")->capture_default_str();
 }
 
@@ -23,6 +27,7 @@ std::unique_ptr<bus::Bus> BusOptions::open(const std::string& participant) const
     settings.vendor = *vendor;
     settings.domain = domain;
     settings.interface = interface;
+    settings.peers = peers;
     settings.participant = participant;
     auto opened = bus::open(settings);
     if (!opened) {
@@ -64,7 +69,7 @@ std::vector<std::string> SystemOptions::assignments() const
 
 system::System SystemOptions::load() const
 {
-    system::Overrides overrides{.dds = {}, .domain = domain, .set = assignments()};
+    system::Overrides overrides{.dds = {}, .domain = domain, .process = {}, .set = assignments()};
     if (!dds.empty()) {
         const auto vendor = bus::vendor_from(dds);
         if (!vendor) {

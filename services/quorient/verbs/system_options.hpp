@@ -8,11 +8,12 @@
 
 namespace quorient::cli {
 
-/// `--dds`, `--domain`, `--interface`, `--unit`: how a live verb joins the bus.
+/// `--dds`, `--domain`, `--interface`, `--peer`, `--unit`: how a live verb joins the bus.
 struct BusOptions {
     std::string dds = "cyclonedds";
     std::uint32_t domain = 42;
     std::string interface = "lo";
+    std::vector<std::string> peers;
     std::uint32_t unit = 1;
 
     void add_to(CLI::App& verb);
