@@ -64,8 +64,9 @@ def frames_until(samples, since, condition, steady=20):
     return None
 
 
-def judge(merged, plain, truths, summary, since, end, faulty, full):
-    """@param since identity at the action, end the last frame judged, faulty mask of axes that may be isolated."""
+def judge(merged, plain, truths, summary, since, end, faulty, voters, full):
+    """@param since identity at the action, end the last frame judged, faulty mask of axes that may be isolated, voters that are
+    there at the end, full what their samples are like when everybody is back."""
     truth = {sample.identity: sample for sample in truths}
     figures = Figures(frames=len(truth), levels={sample.level for sample in merged if sample.arrival_s})
     first = merged[0].identity
@@ -92,7 +93,6 @@ def judge(merged, plain, truths, summary, since, end, faulty, full):
     figures.wrong_isolations += sum(bool(sample.isolated & ~faulty) for sample in merged)
     told = [lane["frames_to_isolation"] for lane in summary["lanes"].values() if lane["frames_to_isolation"]]
     figures.frames_to_isolation = min(max(told, default=3), 3)
-    strongest = min({sample.voter for sample in merged})
-    seen_once = [sample for sample in merged if sample.voter == strongest or strongest == 0]
-    figures.frames_to_full = frames_until(seen_once, since, full)
+    until = [frames_until([sample for sample in merged if sample.voter == voter], since, full) for voter in voters]
+    figures.frames_to_full = None if None in until else max(until)
     return figures

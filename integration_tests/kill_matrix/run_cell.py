@@ -64,6 +64,12 @@ def restored(cell):
     return lambda sample: sample.vouching == ALL_LANES and sample.excluded == 0 and sample.level <= SINGLE
 
 
+def voters_left(cell):
+    """Wire ids of the voters that publish when all is over."""
+    gone = cell.roles if cell.act == "term" else ()
+    return [number for number in (1, 2) if f"voter-{number}" not in gone]
+
+
 def await_outcome(pipeline, cell, since):
     if cell.roles == ("sensor",) and cell.act == "term":
         pipeline.until(lambda: pipeline.merged.newest.level in HELD, "the voters say that frames have ceased", 5)
@@ -79,15 +85,17 @@ def await_outcome(pipeline, cell, since):
                 pipeline.until(lambda: pipeline.truth.newest.identity[0] > epoch, "a third epoch")
         return
     back = restored(cell)
-    seen = {"next": len(pipeline.merged.samples), "run": 0}
+    runs = dict.fromkeys(voters_left(cell), 0)
+    seen = len(pipeline.merged.samples)
 
     def steady():
+        nonlocal seen
         samples = pipeline.merged.samples
-        while seen["next"] < len(samples):
-            sample = samples[seen["next"]]
-            seen["next"] += 1
-            seen["run"] = seen["run"] + 1 if back(sample) else 0
-        return seen["run"] >= STEADY_FRAMES
+        for sample in samples[seen:len(samples)]:
+            seen += 1
+            if sample.voter in runs:
+                runs[sample.voter] = runs[sample.voter] + 1 if back(sample) else 0
+        return all(run >= STEADY_FRAMES for run in runs.values())
 
     pipeline.until(steady, "steady again", 20)
 
@@ -107,7 +115,7 @@ def run(cell):
         summary = pipeline.finish()
         end = pipeline.end if cell.act != "stop" or cell.roles != ("sensor",) else max(pipeline.end, since)
         figures = judge(pipeline.merged.samples, pipeline.plain.samples, pipeline.truth.samples, summary, since, end,
-                        1 << FAULTY_AXIS if cell.fault else 0, restored(cell))
+                        1 << FAULTY_AXIS if cell.fault else 0, voters_left(cell), restored(cell))
         broken = list(bounds_broken(cell, figures, pipeline.merged.samples, since))
         if late:
             broken.append(late)

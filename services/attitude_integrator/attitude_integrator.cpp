@@ -16,6 +16,12 @@ namespace {
 
 constexpr std::int64_t readiness_period_ns = 20'000'000;
 
+/// Frames that an integrator may miss before it asks whether the other lanes know better what turned meanwhile.
+constexpr std::uint64_t longest_own_absence = 5;
+
+/// They do when their standard deviation is so many times smaller; where everybody was cut off, all are alike.
+constexpr double much_surer = 4;
+
 double angle_deg(const std::array<double, 4>& rotation)
 {
     const double sine = std::hypot(rotation[1], rotation[2], rotation[3]);
@@ -102,6 +108,7 @@ bool AttitudeIntegrator::prepare(const ClusterDescription& description, std::uin
 
 void AttitudeIntegrator::integrate(const SensorFrame& frame)
 {
+    if (last_.epoch == frame.epoch && frame.sequence > last_.sequence + longest_own_absence) absent_until_ = identity_of(frame);
     integrator_->add(frame);
     pending_ = identity_of(frame);
     stamps_ = frame.stamp_ns;
@@ -169,7 +176,18 @@ void AttitudeIntegrator::on_voted(const VotedAttitude& voted)
 {
     if (voted.unit != settings_.process.node.unit || (voted_ && identity_of(voted) < identity_of(*voted_))) return;
     voted_ = voted;
-    if (integrator_ && is(integrator_->state(), AttitudeMode::initialising)) integrator_->seed(voted);
+    if (!integrator_) return;
+    if (is(integrator_->state(), AttitudeMode::initialising)) integrator_->seed(voted);
+    else if (absent_until_ && identity_of(voted) >= *absent_until_) rejoin(voted);
+}
+
+/// This process was stopped or cut off: the bridge over its absence lacks the coning in it, the lanes that went on do not.
+void AttitudeIntegrator::rejoin(const VotedAttitude& voted)
+{
+    if (voted.level > static_cast<std::uint8_t>(VoteLevel::single)) return;
+    const bool surer = voted.angle_sigma_rad * much_surer < integrator_->state().angle_sigma_rad;
+    if (surer && voted.primary_lane != settings_.integration.lane) integrator_->seed(voted);
+    absent_until_.reset();
 }
 
 void AttitudeIntegrator::on_command(const FaultCommand& command)

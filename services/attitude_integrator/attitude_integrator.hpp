@@ -22,6 +22,7 @@ private:
     void handle_accepted();
     bool prepare(const ClusterDescription& description, std::uint64_t first_sequence);
     void integrate(const SensorFrame& frame);
+    void rejoin(const VotedAttitude& voted);
     void publish_pending();
     void tell_changes(const AttitudeState& attitude);
     void look_at_readiness();
@@ -34,9 +35,10 @@ private:
     runtime::Timer& patience_timer_;
     runtime::FrameIntake intake_;
     std::optional<attitude::Integrator> integrator_;
-    std::optional<VotedAttitude> voted_;   ///< newest, until this integrator has started
-    std::optional<FaultVerdict> verdict_;  ///< newest of the lane's detector
-    std::optional<Identity> pending_;      ///< integrated, not yet published
+    std::optional<VotedAttitude> voted_;    ///< newest, until this integrator has started
+    std::optional<FaultVerdict> verdict_;   ///< newest of the lane's detector
+    std::optional<Identity> pending_;       ///< integrated, not yet published
+    std::optional<Identity> absent_until_;  ///< first frame after an absence of this process
     AttitudeState last_;
     Stamps stamps_{};
     std::int64_t arrival_ns_ = 0;

@@ -13,6 +13,9 @@ namespace {
 /// A publisher that restarts is silent for at least this long (design: max(5 intervals, 100 ms)).
 constexpr std::int64_t least_grace_ns = 100'000'000;
 
+/// A primary that the stronger voter names in so many frames running is its choice; in fewer it may be a stand-in for a late one.
+constexpr std::uint64_t choice_frames = 5;
+
 }  // namespace
 
 Voter::Brain::Brain(const VoterSettings& settings)
@@ -233,10 +236,17 @@ BallotPaper Voter::Brain::paper_of(std::uint64_t sequence) const
 
 LaneIndex Voter::Brain::wanted_primary() const
 {
-    const VotedAttitude* leader = ranking_.leader(*now_);
-    if (leader == nullptr) return primary_;
-    const auto lane = lane_of(leader->unit, leader->primary_lane, &LaneSettings::lane);
+    const auto leaders = ranking_.leaders_primary(choice_frames, *now_);
+    if (!leaders) return primary_;
+    const auto lane = lane_of(settings_.unit, *leaders, &LaneSettings::lane);
     return lane && !board_.lane(*lane).blocked() ? *lane : primary_;
+}
+
+/// The primary is only late: another lane speaks for it in this frame, until it is silent.
+bool Voter::Brain::is_stand_in(Identity identity, LaneIndex lane) const
+{
+    const LaneIndex wanted = wanted_primary();
+    return continuity_.started() && lane != wanted && !board_.lane(wanted).blocked() && board_.lane(wanted).at(identity) == nullptr;
 }
 
 bool Voter::Brain::is_ready(std::uint64_t sequence, const Ballot& ballot) const
@@ -276,13 +286,13 @@ void Voter::Brain::publish(std::uint64_t sequence, const Ballot& ballot)
 
     const bool on_votes = ballot.backed || is_complete(identity, ballot.several_groups);
     const Continuity::Reset reset = continue_stream(identity, sample);
-    if (*ballot.primary != primary_)
+    if (*ballot.primary != primary_ && !is_stand_in(identity, *ballot.primary))
         change_primary(identity, *ballot.primary, reset.moved ? geodesic_angle(reset.rotation, no_rotation) : 0);
     board_.publish(identity, ballot, board_.unseeded_remain(), *now_);
     timeline_.publish(sequence, on_votes, *now_);
 
     const bool lost = sample.mode == static_cast<std::uint8_t>(AttitudeMode::lost);
-    const bool redundancy_left = !corroboration_.redundancy_exhausted(primary_, *now_);
+    const bool redundancy_left = !corroboration_.redundancy_exhausted(primary_);
     set_level(identity, lost ? VoteLevel::lost : board_.levels().level(board_.excluded(), redundancy_left));
 
     fill(last_, sample, ballot, reset);

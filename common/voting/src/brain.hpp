@@ -51,6 +51,7 @@ private:
     bool is_better_to_come(Identity identity, AxisMask isolated) const;
     bool is_complete(Identity identity, bool several_groups) const;
     LaneIndex wanted_primary() const;
+    bool is_stand_in(Identity identity, LaneIndex lane) const;
 
     void publish(std::uint64_t sequence, const Ballot& ballot);
     Continuity::Reset continue_stream(Identity identity, const AttitudeState& sample);

@@ -97,9 +97,9 @@ bool Corroboration::knows_better(std::size_t lane, AxisMask isolated, std::int64
     return more != 0 && (more & corroborated(now_ns)) != 0;
 }
 
-bool Corroboration::redundancy_exhausted(std::size_t lane, std::int64_t now_ns) const
+bool Corroboration::redundancy_exhausted(std::size_t lane) const
 {
-    return fresh(voice_[lane], now_ns) && voice_[lane].exhausted;
+    return voice_[lane].exhausted;
 }
 
 AxisMask Corroboration::reported(const Voice& voice, std::int64_t now_ns) const

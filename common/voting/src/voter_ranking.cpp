@@ -81,6 +81,18 @@ const VotedAttitude* VoterRanking::leader_before(Identity identity, std::int64_t
     return last;
 }
 
+std::optional<std::uint32_t> VoterRanking::leaders_primary(std::uint64_t frames, std::int64_t now_ns) const
+{
+    const Other* other = leading(now_ns);
+    if (other == nullptr) return std::nullopt;
+    const VotedAttitude& last = newest(*other);
+    for (const VotedAttitude& output : other->output) {
+        const bool recent = output.output_sequence != 0 && output.epoch == last.epoch && output.sequence + frames > last.sequence;
+        if (recent && output.primary_lane != last.primary_lane) return std::nullopt;
+    }
+    return last.primary_lane;
+}
+
 const VotedAttitude* VoterRanking::farthest(std::int64_t now_ns) const
 {
     const Other* farthest = nullptr;
@@ -109,6 +121,12 @@ bool VoterRanking::may_write(Position position, bool repeated)
         written_ = std::max(written_, highest_seen_);
         return false;
     }
+    if (!writing_ && is_overtaken(position) && held_back_ < good_frames_required_) {
+        ++held_back_;
+        written_ = std::max(written_, highest_seen_);
+        return false;
+    }
+    writing_ = true;
     for (const Other& other : others_) {
         if (other.stronger && other.heard) written_ = std::max(written_, other.newest);
     }
@@ -116,6 +134,13 @@ bool VoterRanking::may_write(Position position, bool repeated)
         repeated ? position > written_ && position.identity >= highest_seen_.identity : position.identity > written_.identity;
     if (forward) written_ = position;
     return forward;
+}
+
+/// A weaker voter has written this frame already: the first frame of a new owner would be a step back for its readers.
+bool VoterRanking::is_overtaken(Position position) const
+{
+    return std::any_of(others_.begin(), others_.end(),
+                       [&](const Other& other) { return !other.stronger && other.heard && position.identity <= other.newest.identity; });
 }
 
 bool VoterRanking::is_behind(Identity identity, std::int64_t now_ns) const
@@ -126,7 +151,8 @@ bool VoterRanking::is_behind(Identity identity, std::int64_t now_ns) const
 
 void VoterRanking::start_over()
 {
-    good_frames_ = 0;
+    good_frames_ = held_back_ = 0;
+    writing_ = false;
 }
 
 std::int64_t VoterRanking::leader_ends_ns(std::int64_t now_ns) const

@@ -82,8 +82,7 @@ void RunObserver::on_truth(const TruthState& truth)
     if (truth.epoch != newest_truth_.epoch) {
         if (truth.epoch < newest_truth_.epoch) return;
         truth_.clear();
-        voted_sequences_.clear();
-        first_voted_.reset();
+        std::erase_if(voted_sequences_, [&](const auto& voted) { return voted.first != truth.epoch; });
     }
     ++truth_frames_;
     newest_truth_ = identity_of(truth);
@@ -130,18 +129,16 @@ void RunObserver::on_voted(const VotedAttitude& voted)
     const bool held =
         voted.level == static_cast<std::uint8_t>(VoteLevel::coasting) || voted.level == static_cast<std::uint8_t>(VoteLevel::lost);
     if (held) return;
-    if (voted.epoch == newest_truth_.epoch || truth_.empty()) {
-        if (voted_sequences_.insert(voted.sequence).second) ++voted_.frames;
-        if (!first_voted_) first_voted_ = identity_of(voted);
-    }
+    if (voted.epoch >= newest_truth_.epoch && voted_sequences_[voted.epoch].insert(voted.sequence).second) ++voted_.frames;
     compare(identity_of(voted), voted.attitude, voted_.errors);
 }
 
 std::uint64_t RunObserver::missing_voted() const
 {
-    if (!first_voted_) return truth_.size();
+    const auto voted = voted_sequences_.find(newest_truth_.epoch);
+    if (voted == voted_sequences_.end()) return truth_.size();
     return static_cast<std::uint64_t>(
-        std::count_if(truth_.begin(), truth_.end(), [&](const auto& entry) { return !voted_sequences_.contains(entry.first); }));
+        std::count_if(truth_.begin(), truth_.end(), [&](const auto& entry) { return !voted->second.contains(entry.first); }));
 }
 
 std::optional<std::uint64_t> RunObserver::frames_to_isolation(const LaneRecord& lane) const

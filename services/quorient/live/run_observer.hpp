@@ -107,13 +107,12 @@ private:
     Errors without_rollback_;
     std::optional<attitude::Integrator> shadow_;
     std::optional<ClusterDescription> description_;
-    std::unordered_map<std::uint64_t, TruthState> truth_;  // of the newest epoch, by sequence
-    std::unordered_set<std::uint64_t> voted_sequences_;
-    std::map<std::uint32_t, std::uint64_t> output_sequences_;  // by voter
+    std::unordered_map<std::uint64_t, TruthState> truth_;                         // of the newest epoch, by sequence
+    std::map<std::uint64_t, std::unordered_set<std::uint64_t>> voted_sequences_;  // by epoch, from the newest truth's on
+    std::map<std::uint32_t, std::uint64_t> output_sequences_;                     // by voter
     std::vector<Waiting> waiting_;
     std::optional<Identity> fault_began_;
     std::optional<Identity> fault_ended_;
-    std::optional<Identity> first_voted_;
     AxisMask faulty_ = 0;
     std::uint64_t truth_frames_ = 0;
     Identity newest_truth_;

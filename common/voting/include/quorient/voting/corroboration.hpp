@@ -44,7 +44,7 @@ public:
     bool knows_better(std::size_t lane, AxisMask isolated, std::int64_t now_ns) const;
 
     /// The detector says that no further fault could be detected.
-    bool redundancy_exhausted(std::size_t lane, std::int64_t now_ns) const;
+    bool redundancy_exhausted(std::size_t lane) const;
 
 private:
     struct Voice {

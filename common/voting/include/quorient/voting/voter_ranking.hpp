@@ -7,6 +7,7 @@
 #include <array>
 #include <compare>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace quorient::voting {
@@ -41,6 +42,9 @@ public:
     const VotedAttitude* leader_at(Identity identity, std::int64_t now_ns) const;
     const VotedAttitude* leader_before(Identity identity, std::int64_t now_ns) const;
 
+    /// The primary lane's id that the leader named in each of its newest frames; none while it changes.
+    std::optional<std::uint32_t> leaders_primary(std::uint64_t frames, std::int64_t now_ns) const;
+
     /// The farthest output of all fresh voters; null where there is none.
     const VotedAttitude* farthest(std::int64_t now_ns) const;
 
@@ -74,6 +78,7 @@ private:
     };
 
     const Other* leading(std::int64_t now_ns) const;
+    bool is_overtaken(Position position) const;
     std::int64_t fresh_until_ns(const Other& other) const;
     static const VotedAttitude& newest(const Other& other) { return other.output[other.newest.identity.sequence % remembered]; }
 
@@ -83,6 +88,8 @@ private:
     std::int64_t coasting_interval_ns_;
     unsigned good_frames_required_;
     unsigned good_frames_ = 0;
+    unsigned held_back_ = 0;  ///< frames since it was established that it left to a weaker voter
+    bool writing_ = false;
     std::uint64_t own_sequence_ = 0;
     Position written_;
     Position highest_seen_;
