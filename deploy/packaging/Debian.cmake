@@ -15,18 +15,16 @@ set(CPACK_DEBIAN_QUORIENT_PACKAGE_NAME quorient)
 set(CPACK_DEBIAN_QUORIENT_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_QUORIENT_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_QUORIENT_PACKAGE_SUGGESTS "iceoryx, tshark")
-set(CPACK_COMPONENT_QUORIENT_DESCRIPTION "fault-tolerant attitude pipeline over DDS
- Independent processes isolate failed gyros, integrate the attitude without
- them and vote on the result, so that one right attitude keeps flowing while
- sensors, processes and networks fail. Speaks Fast DDS and Cyclone DDS.")
+set(CPACK_COMPONENT_QUORIENT_DESCRIPTION "Independent processes isolate failed gyros, integrate the attitude without
+them and vote on the result, so that one right attitude keeps flowing while
+sensors, processes and networks fail. Speaks Fast DDS and Cyclone DDS.")
 set(CPACK_DEBIAN_QUORIENT_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_SOURCE_DIR}/packaging/postinst)
 
 set(CPACK_DEBIAN_QUORIENT-DEV_PACKAGE_NAME quorient-dev)
 set(CPACK_DEBIAN_QUORIENT-DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_QUORIENT-DEV_PACKAGE_DEPENDS "libeigen3-dev, libexpected-dev, libfmt-dev, libboost-dev, cmake")
-set(CPACK_COMPONENT_QUORIENT-DEV_DESCRIPTION "fault-tolerant attitude pipeline: libraries and wire contract
- Static libraries, headers and the CMake configuration of the rooms for sensor
- geometry, fault detection and isolation, attitude integration, voting,
- simulation and recordings, and the IDL file of the DDS topics.")
+set(CPACK_COMPONENT_QUORIENT-DEV_DESCRIPTION "For development: static libraries, headers and CMake configuration for sensor
+geometry, fault detection and isolation, attitude integration, voting,
+simulation and recordings, and the IDL file of the DDS topics.")
 
 include(CPack)
