@@ -122,15 +122,16 @@ void Voter::Brain::finish_synchronising()
     if (const VotedAttitude* other = ranking_.farthest(*now_)) adopt(*other);
 }
 
-/// Goes on where the other voter is.
+/// Goes on where the other voter is. What it only repeats is as old as this voter knows, and lost if that one says so.
 void Voter::Brain::adopt(const VotedAttitude& output)
 {
-    if (continuity_.started() && identity_of(output) < continuity_.identity()) return;
+    if (continuity_.started() && identity_of(output) <= continuity_.identity()) return;
     continuity_.follow(output);
     timeline_.pass(identity_of(output));
     if (const auto lane = lane_of(output.unit, output.primary_lane, &LaneSettings::lane)) primary_ = *lane;
     last_ = output;
-    last_frame_ns_ = *now_;
+    const bool lost = output.mode == static_cast<std::uint8_t>(AttitudeMode::lost);
+    last_frame_ns_ = lost ? *now_ - silence_ns_ - coasting_to_lost_ns_ : *now_;
 }
 
 std::optional<LaneIndex> Voter::Brain::lane_of(std::uint32_t unit, std::uint32_t id, std::uint32_t LaneSettings::*member) const
@@ -224,14 +225,30 @@ BallotPaper Voter::Brain::paper_of(std::uint64_t sequence) const
         const AttitudeState* sample = board_.lane(lane).at(identity);
         paper.sample[lane] = sample != nullptr && is_countable(*sample) ? sample : nullptr;
     }
-    paper.blocked = board_.blocked();
     paper.corroborated = corroboration_.corroborated(*now_);
+    paper.blocked = board_.blocked() | using_condemned_axes(paper);
     paper.majority = majority_;
     paper.unseeded_remain = board_.unseeded_remain();
     paper.settling = corroboration_.settling(identity);
     paper.wanted = wanted_primary();
     paper.current = primary_;
     return paper;
+}
+
+/// Lanes that still use what a majority reports and a living lane leaves out: never the output, even where nobody else has spoken of
+/// this frame yet. The frame waits for those who know better, until they are silent.
+LaneMask Voter::Brain::using_condemned_axes(const BallotPaper& paper) const
+{
+    AxisMask condemned = 0;
+    for (LaneIndex lane = 0; lane < paper.lanes; ++lane) {
+        if (!board_.lane(lane).blocked()) condemned |= corroboration_.held_out(lane);
+    }
+    condemned &= paper.corroborated;
+    LaneMask lanes = 0;
+    for (LaneIndex lane = 0; lane < paper.lanes; ++lane) {
+        if (paper.sample[lane] != nullptr && (condemned & ~paper.sample[lane]->isolated_mask) != 0) lanes |= lane_bit(lane);
+    }
+    return lanes;
 }
 
 LaneIndex Voter::Brain::wanted_primary() const

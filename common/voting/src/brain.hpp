@@ -47,6 +47,7 @@ private:
     void go_on();
     void publish_what_is_ready(bool at_once);
     BallotPaper paper_of(std::uint64_t sequence) const;
+    LaneMask using_condemned_axes(const BallotPaper& paper) const;
     bool is_ready(std::uint64_t sequence, const Ballot& ballot) const;
     bool is_better_to_come(Identity identity, AxisMask isolated) const;
     bool is_complete(Identity identity, bool several_groups) const;

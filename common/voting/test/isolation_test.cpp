@@ -187,6 +187,37 @@ TEST(Isolation, stays_corroborated_when_the_detectors_die)
     EXPECT_EQ(scene.error_rad(), 0);
 }
 
+TEST(Isolation, of_a_majority_that_is_late_is_waited_for_in_place_of_the_lane_that_keeps_the_axis)
+{
+    Scene scene;
+    Fault fault;
+    fault.suspected = {50, 50, never};
+    fault.isolated = {52, 52, never};  // lane c's detector is dead
+    fault.play(scene, 0, 99);
+    for (std::uint64_t sequence = 100; sequence < 200; ++sequence) {
+        scene.at(Scene::time_of(sequence), fault.sample(2, sequence));
+        // The others speak of this frame two intervals late.
+        for (std::size_t lane = 0; lane < 2; ++lane) scene.at(Scene::time_of(sequence) + ms / 10, fault.sample(lane, sequence - 2));
+    }
+    for (const Output& output : scene.outputs) {
+        if (output.attitude.sequence < 52) continue;
+        EXPECT_LT(geodesic_angle(output.attitude.attitude, truth(output.attitude.sequence)), 1e-9) << "frame " << output.attitude.sequence;
+    }
+    EXPECT_GE(scene.last().sequence, 197U);
+}
+
+TEST(Isolation, of_lanes_that_have_died_no_longer_holds_the_last_one_back)
+{
+    Scene scene;
+    Fault fault;
+    fault.suspected = {50, 50, never};
+    fault.isolated = {52, 52, never};
+    fault.play(scene, 0, 99);
+    for (std::uint64_t sequence = 100; sequence < 150; ++sequence) scene.at(Scene::time_of(sequence), fault.sample(2, sequence));
+    EXPECT_EQ(scene.last().primary_lane, 3U);
+    EXPECT_EQ(scene.voter.level(), VoteLevel::single);
+}
+
 TEST(Isolation, by_candidates_of_another_detector_counts)
 {
     for (const bool named : {true, false}) {

@@ -59,6 +59,7 @@ QosHandle to_qos(const Qos& qos, const WriterOptions* writer)
     dds_qset_durability(q, qos.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
     dds_qset_history(q, DDS_HISTORY_KEEP_LAST, qos.depth);
     if (qos.transient_local) dds_qset_durability_service(q, 0, DDS_HISTORY_KEEP_LAST, qos.depth, -1, -1, -1);
+    if (qos.latched) dds_qset_history(q, DDS_HISTORY_KEEP_ALL, 0);  // keeps shared memory off; what a late joiner gets is set above
     if (qos.exclusive) {
         dds_qset_ownership(q, DDS_OWNERSHIP_EXCLUSIVE);
         if (writer) {

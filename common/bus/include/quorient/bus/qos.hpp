@@ -9,6 +9,7 @@ struct Qos {
     bool reliable = true;
     bool transient_local = false;  ///< a late joiner gets the history at once
     std::int32_t depth = 64;       ///< KEEP_LAST
+    bool latched = false;          ///< rare samples that every late joiner needs: never by iceoryx, which may not deliver its history
     bool exclusive = false;        ///< EXCLUSIVE ownership with MANUAL_BY_TOPIC liveliness: fails over between writers
 };
 

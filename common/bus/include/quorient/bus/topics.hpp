@@ -50,14 +50,15 @@ struct Topic {
 namespace topics {
 
 // Hot topics carry no deadline and AUTOMATIC liveliness: anything else silently turns iceoryx off.
-inline constexpr Topic<ClusterDescription> cluster{"quorient/cluster", TypeId::cluster_description, {.transient_local = true, .depth = 1}};
+inline constexpr Topic<ClusterDescription> cluster{
+    "quorient/cluster", TypeId::cluster_description, {.transient_local = true, .depth = 1, .latched = true}};
 inline constexpr Topic<SensorFrame> frame{"quorient/frame", TypeId::sensor_frame, {}};
 inline constexpr Topic<TruthState> truth{"quorient/truth", TypeId::truth_state, {}};
 inline constexpr Topic<FaultVerdict> verdict{"quorient/verdict", TypeId::fault_verdict, {.transient_local = true}};
 inline constexpr Topic<AttitudeState> attitude{"quorient/attitude", TypeId::attitude_state, {.transient_local = true}};
 inline constexpr Topic<VotedAttitude> voter_output{"quorient/voter_output", TypeId::voter_output, {.transient_local = true}};
 inline constexpr Topic<VotedAttitude> voted{"quorient/voted", TypeId::voted_attitude, {.transient_local = true, .exclusive = true}};
-inline constexpr Topic<HealthEvent> event{"quorient/event", TypeId::health_event, {.transient_local = true, .depth = 256}};
+inline constexpr Topic<HealthEvent> event{"quorient/event", TypeId::health_event, {.transient_local = true, .depth = 256, .latched = true}};
 inline constexpr Topic<ServiceStatus> status{"quorient/status", TypeId::service_status, {.reliable = false, .depth = 8}};
 inline constexpr Topic<FaultCommand> command{"quorient/command", TypeId::fault_command, {.depth = 64}};
 

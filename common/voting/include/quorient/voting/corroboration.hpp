@@ -43,6 +43,9 @@ public:
     /// The lane leaves out axes that a majority reports and that `isolated` lacks, or its detector has just told it to.
     bool knows_better(std::size_t lane, AxisMask isolated, std::int64_t now_ns) const;
 
+    /// What the lane's detector has isolated or the lane itself leaves out for good.
+    AxisMask held_out(std::size_t lane) const { return voice_[lane].isolated | voice_[lane].applied; }
+
     /// The detector says that no further fault could be detected.
     bool redundancy_exhausted(std::size_t lane) const;
 
