@@ -16,7 +16,9 @@ void add_verbs(CLI::App& program)
     add_assess(program);
     add_propagate(program);
     add_simulate(program);
+    add_vessel(program);
     add_calibrate(program);
+    add_lab(program);
 }
 
 }  // namespace quorient::cli
