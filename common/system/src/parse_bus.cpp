@@ -17,6 +17,7 @@ void parse_process(runtime::Section& section, const Overrides& overrides, Proces
         else section.problem("transport", transport.error());
     }
     section.text("interface", process.bus.interface);
+    if (process.bus.interface == "any") process.bus.interface.clear();
     section.texts("peers", process.bus.peers);
     section.boolean("security", process.bus.security);
     section.boolean("spin", process.spin);

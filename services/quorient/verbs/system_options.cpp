@@ -8,7 +8,7 @@ void BusOptions::add_to(CLI::App& verb)
 {
     verb.add_option("--dds", dds, "fastdds or cyclonedds")->capture_default_str();
     verb.add_option("--domain", domain, "DDS domain")->capture_default_str();
-    verb.add_option("--interface", interface, "Network interface by name, address or subnet; '' = the vendor's choice")
+    verb.add_option("--interface", interface, "Network interface by name, address or subnet; any = the vendor's choice")
         ->capture_default_str();
     verb.add_option("--peer", peers, "IPv4 address to look for peers at, in place of multicast (repeatable)")
         ->type_name("ADDRESS")
@@ -26,7 +26,7 @@ std::unique_ptr<bus::Bus> BusOptions::open(const std::string& participant) const
     bus::Settings settings;
     settings.vendor = *vendor;
     settings.domain = domain;
-    settings.interface = interface;
+    settings.interface = interface == "any" ? "" : interface;
     settings.peers = peers;
     settings.participant = participant;
     auto opened = bus::open(settings);
