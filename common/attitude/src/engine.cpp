@@ -17,6 +17,7 @@ Integrator::Engine::Engine(const IntegratorSettings& settings, std::unique_ptr<c
     : settings_(settings),
       update_(std::move(update)),
       body_(cluster),
+      axis_count_(cluster.size()),
       nominal_interval_s_(cluster.interval_s),
       history_(capacity),
       initialised_(settings.initialised)
@@ -91,7 +92,7 @@ void Integrator::Engine::refold()
     const bool partly_gone = history_dropped_ && first < history_.size();
     const AxisMask before = partly_gone ? history_[first].excluded : 0;
     trust_.fold(history_);
-    if (!partly_gone) return;
+    if (!partly_gone || !settings_.rollback) return;
     const AxisMask new_at_edge = history_[first].excluded & ~before;
     if ((new_at_edge & trust_.excluded_before(history_[first].first_sequence)) != 0) ++history_too_short_;
 }

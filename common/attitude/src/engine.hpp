@@ -59,6 +59,7 @@ private:
     IntegratorSettings settings_;
     std::unique_ptr<const Update> update_;
     BodyIncrement body_;
+    std::size_t axis_count_;
     double nominal_interval_s_;
 
     History history_;

@@ -95,11 +95,11 @@ void Integrator::Engine::append_gap(const SensorFrame& frame, std::uint64_t lost
     record.interval_s = static_cast<double>(lost) * frame.interval_s;
     record.sample_time_ns = frame.sample_time_ns - static_cast<std::int64_t>(std::llround(frame.interval_s * 1e9));
     record.bridge = true;
-    for (std::size_t axis = 0; axis < max_axes; ++axis) {
+    for (std::size_t axis = 0; axis < axis_count_; ++axis) {
         const bool own = has_axis(frame.valid_mask, axis);
         const double turned = frame.accumulated[axis] - accumulated_[axis] - (own ? frame.increment[axis] : 0);
         const bool complete = accumulated_known_ && frame.missed[axis] - missed_[axis] == (own ? 0U : 1U);
-        if (axis >= frame.axis_count || !complete || !usable(turned)) continue;
+        if (!complete || !usable(turned)) continue;
         record.increment[axis] = turned;
         record.valid |= axis_bit(axis);
     }
@@ -111,7 +111,7 @@ void Integrator::Engine::append_frame(const SensorFrame& frame)
     record.first_sequence = record.last_sequence = frame.sequence;
     record.interval_s = frame.interval_s;
     record.sample_time_ns = frame.sample_time_ns;
-    for (std::size_t axis = 0; axis < max_axes; ++axis) {
+    for (std::size_t axis = 0; axis < axis_count_; ++axis) {
         if (!has_axis(frame.valid_mask, axis) || !usable(frame.increment[axis])) continue;
         record.increment[axis] = frame.increment[axis];
         record.valid |= axis_bit(axis);
