@@ -21,6 +21,7 @@ void add_propagate(CLI::App& program);
 void add_simulate(CLI::App& program);
 void add_vessel(CLI::App& program);
 void add_calibrate(CLI::App& program);
+void add_lab(CLI::App& program);
 
 /// All verbs of the program.
 void add_verbs(CLI::App& program);

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "monte_carlo.hpp"
+#include "verbs/svg_plot.hpp"
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace quorient::lab {
+
+using Json = nlohmann::ordered_json;
+
+/// What a study found: the same figures as a table, for machines, and as charts.
+struct Report {
+    std::string text;
+    Json json;
+    std::vector<cli::Chart> charts;
+};
+
+/// Methods x layouts x faults on white noise of sigma 1: the table "Best achievable rate" of methods.md beside its values, and the
+/// subset method over its margin.
+Report isolation(const RunSettings& settings, const OnProgress& on_progress);
+
+/// The figures of paper 002 that a fitted fault model reproduces, and those that none does.
+Report paper_002(const RunSettings& settings, const OnProgress& on_progress);
+
+/// What one sample can tell at all: the fault size that is detected in 99 of 100 samples, and isolation at 10 sigma, per layout.
+Report ceiling(const RunSettings& settings, const OnProgress& on_progress);
+
+/// False alarms and isolation of the observer schemes, with limits from noise and model error, and with a fixed threshold.
+Report vessel(const RunSettings& settings, const OnProgress& on_progress);
+
+inline constexpr std::uint64_t isolation_trials = 100'000;
+inline constexpr std::uint64_t paper_002_trials = 400'000;
+inline constexpr std::uint64_t ceiling_trials = 200'000;
+inline constexpr std::uint64_t vessel_trials = 100;
+
+}  // namespace quorient::lab
