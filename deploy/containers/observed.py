@@ -30,32 +30,32 @@ class Trace:
             elif topic == "voter_output":
                 self.outputs.setdefault(sample["voter"], []).append(sample)
             elif topic == "truth":
-                self.truth[sample["sequence"]] = sample
+                self.truth[sample["sequence_number"]] = sample
             elif topic == "event":
                 self.events.append(sample)
 
     def newest(self):
         """The newest frame that a voter published; None before the first."""
-        return max((samples[-1]["sequence"] for samples in self.outputs.values()), default=None)
+        return max((samples[-1]["sequence_number"] for samples in self.outputs.values()), default=None)
 
     def latest(self, voter):
         return self.outputs[voter][-1] if self.outputs.get(voter) else None
 
     def between(self, voter, first, last):
-        return [sample for sample in self.outputs.get(voter, []) if first <= sample["sequence"] <= last]
+        return [sample for sample in self.outputs.get(voter, []) if first <= sample["sequence_number"] <= last]
 
     def missing(self, first, last):
         """Frames that no voter published."""
-        published = {sample["sequence"] for samples in self.outputs.values() for sample in samples}
+        published = {sample["sequence_number"] for samples in self.outputs.values() for sample in samples}
         return sorted(set(range(first, last + 1)) - published)
 
     def longest_gap_of_voted(self, first, last):
         """The largest run of frames without a sample of the owned topic."""
-        frames = sorted({first, last} | {sample["sequence"] for sample in self.voted if first <= sample["sequence"] <= last})
+        frames = sorted({first, last} | {sample["sequence_number"] for sample in self.voted if first <= sample["sequence_number"] <= last})
         return max(after - before for before, after in zip(frames, frames[1:])) - 1
 
     def error_rad(self, sample):
-        truth = self.truth.get(sample["sequence"])
+        truth = self.truth.get(sample["sequence_number"])
         return angle_between(sample["attitude"], truth["attitude"]) if truth else None
 
     def level_steps(self, voter, first, last):
@@ -63,5 +63,5 @@ class Trace:
         steps = []
         for sample in self.between(voter, first, last):
             if not steps or steps[-1][1] != sample["level"]:
-                steps.append((sample["sequence"], sample["level"]))
+                steps.append((sample["sequence_number"], sample["level"]))
         return steps
