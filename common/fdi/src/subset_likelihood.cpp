@@ -153,8 +153,26 @@ bool SubsetLikelihood::adds_nothing(AxisMask units, AxisMask working, std::size_
 void SubsetLikelihood::add_set(AxisMask axes, std::size_t size, std::span<const std::uint8_t> independent)
 {
     sets_.push_back({axes, static_cast<std::uint8_t>(size), static_cast<std::uint8_t>(independent.size()),
-                     static_cast<std::uint32_t>(members_.size()), static_cast<std::uint32_t>(weights_.size())});
+                     static_cast<std::uint32_t>(members_.size()), static_cast<std::uint32_t>(weights_.size()),
+                     !instruments_ && size < max_faults_ ? visibility_beside(axes) : 0});
     members_.insert(members_.end(), independent.begin(), independent.end());
+}
+
+/// min over j outside w of P_jj - P_jw (P_ww)^-1 P_wj.
+double SubsetLikelihood::visibility_beside(AxisMask axes) const
+{
+    const auto& projector = parity_.space().projector();
+    const Factor factor(projector, axes);
+    const auto rank = static_cast<Eigen::Index>(factor.rank);
+    double least = 1;
+    for (Eigen::Index other = 0; other < projector.rows(); ++other) {
+        if (has_axis(axes, static_cast<std::size_t>(other)) || !parity_.space().sees(other)) continue;
+        geometry::AxisVector coupling(rank);
+        for (Eigen::Index k = 0; k < rank; ++k) coupling(k) = projector(factor.axis[static_cast<std::size_t>(k)], other);
+        const geometry::AxisVector shared = factor.inverse.topLeftCorner(rank, rank) * coupling;
+        least = std::min(least, projector(other, other) - shared.squaredNorm());
+    }
+    return std::max(0.0, least);
 }
 
 /// S_w: the squared norm of L^-1 r_w is what the set explains.
@@ -169,6 +187,21 @@ double SubsetLikelihood::left_by(const Set& set) const
         explained += projection * projection;
     }
     return std::max(0.0, sum_of_squares_ - explained);
+}
+
+/// min |f_w|, f_w = (P_ww)^-1 r_w, over sigma.
+double SubsetLikelihood::smallest_fault(const Set& set) const
+{
+    std::array<double, max_axes> fault{};
+    const double* weight = weights_.data() + set.weight;
+    for (std::size_t row = 0; row < set.rank; weight += ++row) {
+        double projection = 0;
+        for (std::size_t column = 0; column <= row; ++column) projection += weight[column] * residual_(members_[set.member + column]);
+        for (std::size_t column = 0; column <= row; ++column) fault[column] += weight[column] * projection;
+    }
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < set.rank; ++k) least = std::min(least, std::abs(fault[k]));
+    return least;
 }
 
 void SubsetLikelihood::remember(const Score& score)
@@ -232,7 +265,9 @@ void SubsetLikelihood::name(const Set& chosen, double statistic, std::size_t tri
     }
     const bool perhaps_none = sum_of_squares_ <= rival;
     const bool perhaps_more = chosen.size < max_faults_ && statistic > doubt_limit_[parity_.redundancy() - chosen.rank] + rounding();
-    assessment.outcome = perhaps_none || perhaps_more ? Outcome::suspect : Outcome::isolated;
+    const bool immaterial =
+        perhaps_more && material * smallest_fault(chosen) * std::sqrt(chosen.visibility) >= std::sqrt(statistic) + std::sqrt(margin_);
+    assessment.outcome = perhaps_none || (perhaps_more && !immaterial) ? Outcome::suspect : Outcome::isolated;
     assessment.isolated = chosen.axes;
 }
 

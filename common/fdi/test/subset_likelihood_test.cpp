@@ -73,6 +73,17 @@ TEST(SubsetLikelihood, with_doubt_hardly_ever_takes_two_small_faults_for_one)
     EXPECT_LT(rates("dodecahedron", doubting, 2, 5, 30, 7).wrong, 0.25);
 }
 
+TEST(SubsetLikelihood, doubts_a_small_fault_and_names_a_large_one_that_leaves_as_much)
+{
+    auto doubting = with(9);
+    doubting.doubt = 0.5;
+    const Rates small = rates("dodecahedron", doubting, 1, 20, 22, 9);
+    const Rates large = rates("dodecahedron", doubting, 1, 100, 200, 10);
+    EXPECT_NEAR(small.correct, 50, 1.5);  // the doubt, four standard errors
+    EXPECT_GT(large.correct, 99.5);
+    EXPECT_LT(rates("dodecahedron", doubting, 2, 5, 30, 11).wrong, 0.25);
+}
+
 /// S_w by deleting the rows of w and fitting the rest again.
 double refitted(const geometry::SensorCluster& cluster, const std::vector<double>& z, AxisMask without)
 {

@@ -24,7 +24,9 @@ namespace quorient::fdi {
 ///   - no fault at all leaves at most S_w + M: suspect, with w as the likeliest culprit;
 ///   - w is smaller than K, and S_w is above the limit that a right w exceeds with probability `doubt`: suspect, for one more fault,
 ///     too small to contradict w, may be there. (Without `doubt` such pairs are named as one fault: 8 % of two faults of 5 to 30 sigma
-///     on six axes at margin 9, 0.2 % with doubt 0.5; the price is half of the right isolations.)
+///     on six axes at margin 9, 0.2 % with doubt 0.5; the price is half of the right isolations.) It is not held back where a further
+///     fault of the share `material` of the smallest one in w would have left at least (sqrt(S_w) + sqrt(M))^2: whatever is there
+///     is then too small beside what is named. (Axes only; instruments have no one size of a fault.)
 /// No size within its limit: blind. Sets that explain nothing beyond a smaller one (P_ww singular) are left out.
 ///
 /// Axes of unequal sigma are whitened first. For 4 to 24 axes, K up to q and as many sets as max_sets.
@@ -33,6 +35,7 @@ class SubsetLikelihood final : public FrameDetector {
 public:
     static constexpr std::size_t max_sets = 20'000;
     static constexpr double default_margin = 9;  ///< three sigma between the best explanation and the next
+    static constexpr double material = 0.2;      ///< of a named fault: below, a further fault is no reason for doubt
 
     struct Score {
         AxisMask axes = 0;
@@ -53,6 +56,7 @@ private:
         std::uint8_t rank = 0;
         std::uint32_t member = 0;  ///< first of its independent axes in members_
         std::uint32_t weight = 0;  ///< first of the rows of L^-1 in weights_, (P_ww = L L'), each as long as its place
+        double visibility = 0;     ///< of one more fault: what one of size 1 leaves of S_w at least; 0 where none is allowed or seen
     };
 
     SubsetLikelihood(const geometry::SensorCluster& cluster, geometry::AxisVector sigma, const DetectorSettings& settings);
@@ -64,7 +68,9 @@ private:
     bool adds_nothing(AxisMask units, AxisMask working, std::size_t rank) const;
     void add_set(AxisMask axes, std::size_t size, std::span<const std::uint8_t> independent);
 
+    double visibility_beside(AxisMask axes) const;
     double left_by(const Set& set) const;
+    double smallest_fault(const Set& set) const;
     void remember(const Score& score);
     void name(const Set& chosen, double statistic, std::size_t tried, Assessment& assessment) const;
     double rounding() const;
