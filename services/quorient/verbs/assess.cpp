@@ -123,7 +123,9 @@ void add_method_options(CLI::App& verb, AssessOptions& options)
                     "explanations that differ by less are ambiguous, in units of sigma^2 (default: subset 9, else 0)");
     verb.add_option("--doubt", settings.doubt,
                     "subset: share of right isolations held back as suspect, to rule out one more small fault (default none)");
-    verb.add_option("--direction", options.direction, "guaranteed: also the interval along this body vector, as in 0,0,1")->delimiter(',');
+    verb.add_option("--direction", options.direction, "guaranteed: also the interval along this body vector, as in 0,0,1")
+        ->delimiter(',')
+        ->allow_extra_args(false);
     verb.add_flag("--instruments", settings.instruments, "subset: a fault takes a whole instrument");
     verb.add_flag("--relaxed", settings.relaxed, "invariants: where no pattern fits, leave out what the best quadruple leaves out");
 }
