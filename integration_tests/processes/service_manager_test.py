@@ -9,7 +9,7 @@ from harness import CONFIGURATIONS, ProcessTest
 
 
 class ServiceManager(ProcessTest):
-    WATCHDOG_S = 0.4
+    WATCHDOG_S = 2.0
 
     def setUp(self):
         super().setUp()
