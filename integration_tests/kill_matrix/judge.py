@@ -16,7 +16,7 @@ class Figures:
     wrong_isolations: int = 0
     frames_to_isolation: int = 3
     frames_to_full: int = None
-    outside_sigmas: int = 0  # bridged attitudes whose error is above five of their standard deviations
+    outside_sigmas: int = 0  # bridged attitudes whose error is above 1e-5 rad and five of their standard deviations
     claims: int = 0  # frames of a later epoch with a level that claims to know the attitude
     levels: set = field(default_factory=set)
 
@@ -82,7 +82,7 @@ def judge(merged, plain, truths, summary, since, end, faulty, voters, full):
     figures.final_error_rad = max(judged)[1]
     # Behind the action, where the standard deviation says how much of the motion is not known.
     after = [entry for entry in judged if entry[0] > since]
-    figures.outside_sigmas = sum(error > 5 * sample.sigma_rad for _, error, sample in after if sample.sigma_rad > 1e-5)
+    figures.outside_sigmas = sum(error > max(5 * sample.sigma_rad, 1e-5) for _, error, sample in after)
     figures.claims = sum(sample.identity[0] > since[0] and sample.level not in HELD for sample in merged)
 
     ordered = sorted(identity for identity in truth if identity[0] == since[0])

@@ -67,6 +67,12 @@ class Pipeline:
     def command(self, verb, *arguments):
         return [str(BIN / "quorient"), verb, *map(str, arguments)]
 
+    def run(self, verb, *arguments):
+        """Another verb of the command line beside the running system."""
+        return subprocess.run(
+            self.command(verb, *arguments, "--domain", self.domain), env=self.environment, capture_output=True, text=True, timeout=30
+        )
+
     def _record(self, topic, vendor, parse):
         return Recording(self.command("echo", topic, "--json", "--domain", self.domain, "--dds", vendor), self.environment, parse)
 

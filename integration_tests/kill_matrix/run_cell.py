@@ -97,7 +97,7 @@ def await_outcome(pipeline, cell, since):
                 runs[sample.voter] = runs[sample.voter] + 1 if back(sample) else 0
         return all(run >= STEADY_FRAMES for run in runs.values())
 
-    pipeline.until(steady, "steady again", 20)
+    pipeline.until(steady, "steady again", 10)
 
 
 def run(cell):

@@ -29,6 +29,7 @@ ParityFdi::ParityFdi(const system::DetectorProcess& settings, bus::Bus& bus, run
         handle_accepted();
     });
     loop.on(bus.subscribe(bus::topics::attitude), [this](const AttitudeState& attitude) { on_lane_attitude(attitude); });
+    loop.on(bus.subscribe(bus::topics::voter_output), [this](const VotedAttitude& voted) { on_voted(voted); });
     loop.on(bus.subscribe(bus::topics::command), [this](const FaultCommand& command) { on_command(command); });
     frames_ = &loop.on(bus.subscribe(bus::topics::frame), [this](const SensorFrame& frame) { on_frame(frame); });
     node_.watch(
@@ -76,7 +77,7 @@ bool ParityFdi::prepare(const ClusterDescription& description)
         for (auto& sequence : excluded_from) sequence = sequence == never ? never : 0;
         monitor_->adopt(excluded_from);
     }
-    adopt_from_lane();
+    adopt_memories();
     return true;
 }
 
@@ -142,18 +143,35 @@ void ParityFdi::tell_changes(const FaultVerdict& verdict)
 void ParityFdi::on_lane_attitude(const AttitudeState& attitude)
 {
     if (attitude.unit != settings_.process.node.unit || attitude.lane != settings_.lane || attitude.isolated_mask == 0) return;
-    lane_memory_ = attitude;
-    if (monitor_) adopt_from_lane();
+    remember(attitude.epoch, attitude.excluded_from, of_lane_);
 }
 
-void ParityFdi::adopt_from_lane()
+/// A fault that was isolated while this detector was dead may show no more; what a majority of lanes stands behind is taken over.
+void ParityFdi::on_voted(const VotedAttitude& voted)
 {
-    if (!lane_memory_ || !adopting_) return;
-    auto excluded_from = lane_memory_->excluded_from;
-    if (lane_memory_->epoch != intake_.description()->epoch) {
-        for (auto& sequence : excluded_from) sequence = sequence == never ? never : 0;
+    const bool vouched =
+        voted.level == static_cast<std::uint8_t>(VoteLevel::full) || voted.level == static_cast<std::uint8_t>(VoteLevel::degraded);
+    if (!adopting_ || voted.unit != settings_.process.node.unit || voted.isolated_mask == 0 || !vouched) return;
+    remember(voted.epoch, voted.excluded_from, of_voters_);
+}
+
+void ParityFdi::remember(std::uint64_t epoch, const std::array<std::uint64_t, max_axes>& excluded_from, Memory& memory)
+{
+    memory = {epoch, excluded_from, true};
+    if (monitor_) adopt_memories();
+}
+
+void ParityFdi::adopt_memories()
+{
+    if (!adopting_) return;
+    for (const Memory* memory : {&of_lane_, &of_voters_}) {
+        if (!memory->known) continue;
+        auto excluded_from = memory->excluded_from;
+        if (memory->epoch != intake_.description()->epoch) {
+            for (auto& sequence : excluded_from) sequence = sequence == never ? never : 0;
+        }
+        monitor_->adopt(excluded_from);
     }
-    monitor_->adopt(excluded_from);
 }
 
 void ParityFdi::on_command(const FaultCommand& command)

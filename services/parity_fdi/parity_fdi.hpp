@@ -15,14 +15,23 @@ public:
     ParityFdi(const system::DetectorProcess& settings, bus::Bus& bus, runtime::EventLoop& loop);
 
 private:
+    /// What others say of exclusions.
+    struct Memory {
+        std::uint64_t epoch = 0;
+        std::array<std::uint64_t, max_axes> excluded_from{};
+        bool known = false;
+    };
+
     void on_frame(const SensorFrame& frame);
     void on_lane_attitude(const AttitudeState& attitude);
+    void on_voted(const VotedAttitude& voted);
     void on_command(const FaultCommand& command);
     void handle_accepted();
     bool prepare(const ClusterDescription& description);
     void assess(const SensorFrame& frame);
     void tell_changes(const FaultVerdict& verdict);
-    void adopt_from_lane();
+    void remember(std::uint64_t epoch, const std::array<std::uint64_t, max_axes>& excluded_from, Memory& memory);
+    void adopt_memories();
     void look_at_readiness();
 
     system::DetectorProcess settings_;
@@ -32,8 +41,9 @@ private:
     runtime::FrameIntake intake_;
     std::optional<fdi::FaultMonitor> monitor_;
     FaultVerdict last_;
-    bool adopting_ = true;                      ///< until this detector's first judgement, or an order
-    std::optional<AttitudeState> lane_memory_;  ///< what the lane's integrator last said of exclusions
+    bool adopting_ = true;  ///< until this detector's first judgement, or an order
+    Memory of_lane_;        ///< what the lane's integrator remembers of this detector's life before
+    Memory of_voters_;      ///< what a majority stands for: found while this detector was dead
     std::int64_t arrival_ns_ = 0;
     std::uint64_t told_rejected_ = 0;
     std::uint64_t told_foreign_ = 0;

@@ -1,0 +1,26 @@
+#!/usr/bin/env python3
+"""A dozen named cells of the kill matrix; the whole of it: run_cell.py --all."""
+import unittest
+
+from pipeline import ask_for_priority
+from run_cell import BY_NAME, attempt
+
+
+class KillMatrix(unittest.TestCase):
+    def holds(self, name):
+        _, broken, logs, _ = attempt(BY_NAME[name])
+        self.assertFalse(broken, "\n".join(f"--- {process}\n{log}" for process, log in logs.items()))
+
+
+NAMED = (
+    "attitude-a/kill/quiet", "attitude-a/kill/isolating", "attitude-a/stop/quiet", "attitude-b/restart/quiet",
+    "fdi-a/kill/isolating", "fdi-a/restart/quiet", "fdi-a/stop/quiet",
+    "voter-1/kill/quiet", "voter-1/stop/quiet", "voter-2/kill/isolating",
+    "sensor/kill/quiet", "sensor/stop/quiet",
+)
+for cell in NAMED:
+    setattr(KillMatrix, f"test_{cell}", lambda self, cell=cell: self.holds(cell))
+
+if __name__ == "__main__":
+    ask_for_priority()
+    unittest.main(verbosity=2)
