@@ -1,0 +1,32 @@
+#pragma once
+
+#include "quorient/recording/reader.hpp"
+
+#include <span>
+#include <vector>
+
+namespace quorient::recording {
+
+/// How one log's clock stands against another's.
+struct ClockOffset {
+    double offset_s = 0;     ///< what this log's time shows when the other's shows 0 (times as RecordedFrame::time_ns)
+    double correlation = 0;  ///< of the two logs' rates of turn at that offset, 1 = alike
+};
+
+/// Compares how fast the two logs' first triads turned (a figure that no mounting changes) at all offsets up to `longest_s` either way.
+/// @returns an error if no offset makes them alike: different motions, or none.
+tl::expected<ClockOffset, std::string> estimate_offset(const std::filesystem::path& reference, const std::filesystem::path& other,
+                                                       double longest_s = 3.0);
+
+struct MergedLogs {
+    std::unique_ptr<Reader> reader;
+    std::vector<ClockOffset> offsets;  ///< of every log against the first, whose own is 0
+};
+
+/// Several logs of one motion as one cluster: the axes of all, at the sample times of the first log. What the others measured is split
+/// at these times as if their rates were constant within each of their intervals, so no rotation is lost or counted twice; where a
+/// log has nothing to say its axes are not valid. Mountings are as in the logs (each its own frame): `quorient calibrate` finds them.
+/// @returns an error as open_log and estimate_offset do, or if there are more than 24 axes.
+tl::expected<MergedLogs, std::string> open_logs(std::span<const std::filesystem::path> files);
+
+}  // namespace quorient::recording
