@@ -86,6 +86,7 @@ tl::expected<ObserverBank, std::string> ObserverBank::make(const ObserverSetting
     ObserverBank bank(settings, interval_s);
     if (auto designed = bank.design(settings); !designed) return tl::unexpected(designed.error());
     bank.set_noise_limits(settings);
+    if (settings.scheme == ObserverScheme::directional) bank.set_attribution_frames();
     return bank;
 }
 
@@ -201,6 +202,30 @@ void ObserverBank::set_noise_limits(const ObserverSettings& settings)
         observer.noise_limit = z * residual.diagonal().cwiseSqrt();
         observer.metric_noise_limit = z * std::sqrt(observer.direction.dot(residual * observer.direction));
         set_limits(observer);
+    }
+}
+
+/// The response of all observers to a step on each channel, until it has settled: e' = (A - K C) e - K f, r = C e + f.
+void ObserverBank::set_attribution_frames()
+{
+    double rate = std::numeric_limits<double>::infinity();
+    for (const Observer& observer : observers_) rate = std::min(rate, slowest_rate(plant_.a - observer.gain * plant_.c));
+    const auto frames = static_cast<std::uint64_t>(std::ceil(-std::log(settled) / rate / interval_s_));
+    for (std::size_t faulty = 0; faulty < channels(); ++faulty) {
+        const Eigen::VectorXd fault = Eigen::VectorXd::Unit(plant_.outputs(), static_cast<Eigen::Index>(faulty));
+        std::vector<Eigen::VectorXd> errors(observers_.size(), Eigen::VectorXd::Zero(plant_.states()));
+        for (std::uint64_t frame = 0; frame < frames; ++frame) {
+            std::size_t named = 0;
+            double largest = 0;
+            for (std::size_t i = 0; i < observers_.size(); ++i) {
+                const Observer& observer = observers_[i];
+                const double ratio = std::abs(observer.direction.dot(plant_.c * errors[i] + fault)) / observer.metric_limit;
+                if (ratio > largest) named = i;
+                largest = std::max(largest, ratio);
+                errors[i] = (observer.state * errors[i] - observer.drive * observer.gain * fault).eval();
+            }
+            if (named != faulty) attribution_frames_ = std::max(attribution_frames_, (frame + 1) * 3 / 2 + 1);
+        }
     }
 }
 

@@ -70,7 +70,7 @@ void ObserverDetector::follow_to(const Measurement& measurement)
                          measurement.identity.sequence - last_->sequence <= longest_gap;
     if (!follows) {
         bank_.start(samples_);
-        frames_ = 0;
+        frames_ = alarm_frames_ = 0;
         return;
     }
     for (std::uint64_t missing = last_->sequence + 1; missing < measurement.identity.sequence; ++missing) {
@@ -79,10 +79,13 @@ void ObserverDetector::follow_to(const Measurement& measurement)
     }
 }
 
-void ObserverDetector::judge_directional(Assessment& assessment) const
+void ObserverDetector::judge_directional(Assessment& assessment)
 {
     assessment.outcome = Outcome::healthy;
-    if (excluded_ != 0) return;  // both observers use both channels: nothing can be compared any more
+    if (excluded_ != 0) {  // both observers use both channels: nothing can be compared any more
+        alarm_frames_ = 0;
+        return;
+    }
     double best = 0;
     std::size_t channel = 0;
     for (std::size_t observer = 0; observer < bank_.size(); ++observer) {
@@ -93,8 +96,13 @@ void ObserverDetector::judge_directional(Assessment& assessment) const
     }
     report(channel, interval_s_, assessment);
     assessment.statistic = best;
-    if (best <= 1) return;
-    assessment.outcome = Outcome::isolated;
+    if (best <= 1) {
+        alarm_frames_ -= alarm_frames_ > 0 ? 1 : 0;
+        return;
+    }
+    alarm_frames_ = std::min(alarm_frames_ + 1, bank_.attribution_frames() + 1);
+    assessment.outcome = alarm_frames_ > bank_.attribution_frames() ? Outcome::isolated : Outcome::suspect;
+    if (assessment.outcome == Outcome::suspect) return;
     assessment.isolated = axis_bit(channel);
     const std::size_t other = 1 - channel;
     const double rival = bank_.metric(other) / bank_.metric_limit(other);

@@ -287,19 +287,38 @@ TEST(ObserverDetector, isolates_every_sample_of_both_faults_by_the_blind_scheme)
     }
 }
 
-TEST(ObserverDetector, flags_the_right_channel_as_often_as_the_paper_by_the_directional_scheme)
+TEST(ObserverBank, flags_the_right_channel_as_often_as_the_paper_by_the_directional_metrics)
 {
-    auto detector = ObserverDetector::make(paper_settings(ObserverScheme::directional), 0.01).value();
+    auto bank = paper_bank(ObserverScheme::directional);
     int right_gyro = 0, right_acc = 0, alarms = 0;
-    follow(PaperRun{}, *detector, [&](double time, const Assessment& assessment) {
-        right_gyro += time >= 20 && time < 30 && assessment.isolated == 0b10 ? 1 : 0;
-        right_acc += time >= 50 && time < 70 && assessment.isolated == 0b01 ? 1 : 0;
+    follow(PaperRun{}, bank, [&](double time, const Eigen::VectorXd&) {
+        const double a = bank.metric(0), g = bank.metric(1);
+        right_gyro += time >= 20 && time < 30 && g > 1e-3 && g > a ? 1 : 0;
+        right_acc += time >= 50 && time < 70 && a > 1e-3 && a > g ? 1 : 0;
         const bool quiet = (time >= 5 && time < 20) || (time >= 40 && time < 50) || time >= 79;
-        alarms += quiet && assessment.outcome != Outcome::healthy ? 1 : 0;
+        alarms += quiet && std::max(a, g) > 1e-3 ? 1 : 0;
     });
     EXPECT_NEAR(right_gyro / 1000.0, .973, .0015);
     EXPECT_NEAR(right_acc / 2000.0, .924, .0015);
     EXPECT_EQ(alarms, 0);
+}
+
+TEST(ObserverDetector, never_names_the_wrong_channel_while_the_directions_form)
+{
+    auto detector = ObserverDetector::make(paper_settings(ObserverScheme::directional), 0.01).value();
+    int right_gyro = 0, right_acc = 0, wrong = 0, seen_at_once = 0;
+    follow(PaperRun{}, *detector, [&](double time, const Assessment& assessment) {
+        const bool gyro = time >= 20 && time < 30, acc = time >= 50 && time < 70;
+        right_gyro += gyro && assessment.isolated == 0b10 ? 1 : 0;
+        right_acc += acc && assessment.isolated == 0b01 ? 1 : 0;
+        wrong += (gyro && assessment.isolated == 0b01) || (acc && assessment.isolated == 0b10) ? 1 : 0;
+        const bool onset = (time > 19.995 && time < 20.005) || (time > 49.995 && time < 50.005);
+        seen_at_once += onset && assessment.outcome == Outcome::suspect ? 1 : 0;
+    });
+    EXPECT_EQ(wrong, 0);
+    EXPECT_EQ(seen_at_once, 2) << "detection does not wait for attribution";
+    EXPECT_GT(right_gyro, 740);
+    EXPECT_GT(right_acc, 1740);
 }
 
 TEST(ObserverDetector, raises_no_alarm_without_a_fault)

@@ -42,7 +42,8 @@ struct ObserverSettings {
 /// residuals compared in one frame; dr/dp runs along with the observer, so the limit breathes with the motion.
 ///
 /// Not guaranteed: samples are held, so a moving plant leaves residuals of the order K x' h even without fault (1e-5 in the paper's run
-/// at 100 Hz); model_error is what covers them. The model error counts to first order; a plant that is wrong in its structure raises alarms.
+/// at 100 Hz); model_error is what covers them. The model error counts to first order; a plant that is wrong in its structure raises
+/// alarms.
 class ObserverBank {
 public:
     using State = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, max_states, 1>;
@@ -80,6 +81,10 @@ public:
     /// C_i = |l_i' r_i| / |l_i| of eq (25), l_i = C K_i e_i, and its limit. Directional scheme.
     double metric(std::size_t observer) const;
     double metric_limit(std::size_t observer) const { return observers_[observer].metric_limit; }
+
+    /// Directional scheme: frames after the onset of a constant fault during which the metrics may still name the wrong channel
+    /// (at first every observer sees the bare fault; the directions form with the observers' poles), times 1.5. Blind scheme: 0.
+    std::uint64_t attribution_frames() const { return attribution_frames_; }
 
     /// Frames until a wrong start has decayed to 1/1000 in all observers; 0 where the samples tell the whole state.
     std::uint64_t settling_frames() const { return settling_frames_; }
@@ -121,6 +126,7 @@ private:
     tl::expected<void, std::string> design_blind(const ObserverSettings& settings);
     void add(AxisMask channels, const Eigen::MatrixXd& gain);
     void set_noise_limits(const ObserverSettings& settings);
+    void set_attribution_frames();
     void set_limits(Observer& observer) const;
 
     LinearPlant plant_;
@@ -130,6 +136,7 @@ private:
     double model_error_;
     std::optional<double> threshold_;
     std::uint64_t settling_frames_ = 0;
+    std::uint64_t attribution_frames_ = 0;
     SmallMatrix from_samples_;  ///< pseudo-inverse of C
     std::vector<Parameter> parameters_;
     std::vector<Observer> observers_;

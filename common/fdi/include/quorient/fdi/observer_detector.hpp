@@ -13,8 +13,9 @@ namespace quorient::fdi {
 /// Fault detection by observers, behind the interface of all methods. Channels are the axes; a channel's sample is its increment divided by
 /// the interval, the known inputs are those of the frame.
 ///
-/// Directional: the channel with the largest metric above its limit; where another one's is above its limit too and within `margin`
-/// of it, both are candidates.
+/// Directional: the channel with the largest metric above its limit, once metrics have been above their limits for the bank's
+/// attribution time; before that a fault is seen and not attributed. Where another metric is above its limit too and within `margin` of the
+/// largest, both channels are candidates. A fault shorter than the attribution time may be laid at the wrong channel's door.
 /// Blind: channel i is a candidate if all that the observer without i expects of the other channels comes true. All are: healthy. Exactly
 /// one is: isolated. Several: ambiguous. None: a pair, where an observer without it explains the rest; else blind.
 ///
@@ -39,7 +40,7 @@ private:
 
     bool read_input(const Measurement& measurement);
     void follow_to(const Measurement& measurement);
-    void judge_directional(Assessment& assessment) const;
+    void judge_directional(Assessment& assessment);
     void judge_blind(Assessment& assessment) const;
     void judge_last(AxisMask working, Assessment& assessment) const;
     double worst(std::size_t observer, AxisMask channels) const;
@@ -51,7 +52,8 @@ private:
     double margin_;
     AxisMask excluded_ = 0;
     std::optional<Identity> last_;
-    std::uint64_t frames_ = 0;  ///< since the observers started
+    std::uint64_t frames_ = 0;        ///< since the observers started
+    std::uint64_t alarm_frames_ = 0;  ///< directional: up with every alarm, down with every frame without
     ObserverBank::Outputs samples_;
     ObserverBank::Inputs input_;
 };
