@@ -19,7 +19,7 @@ ALLOWED = {
     "calibration": {"geometry", "messages"},
     "bus": {"messages"},
     "runtime": {"bus", "messages"},
-    "system": {"attitude", "bus", "fdi", "geometry", "messages", "runtime", "simulation", "voting"},
+    "system": {"attitude", "bus", "calibration", "fdi", "geometry", "messages", "runtime", "simulation", "voting"},
 }
 EIGEN = {"geometry", "fdi", "attitude", "voting", "simulation", "calibration", "system"}
 # What the algorithm rooms must not know: clocks, threads, files, loggers.

@@ -1,5 +1,7 @@
 #include "quorient/attitude/update.hpp"
 
+#include "polynomial_fit.hpp"
+
 #include "block_update.hpp"
 #include "classic_update.hpp"
 #include "window_update.hpp"
@@ -56,6 +58,7 @@ std::vector<UpdateEntry> update_catalogue()
 
 tl::expected<std::unique_ptr<const Update>, std::string> make_update(std::string_view name)
 {
+    equal_fit(1, 0);  // the tables are made now, not at the first sample
     for (const auto& entry : classic_entries)
         if (entry.name == name) return std::make_unique<const ClassicUpdate>(entry.rule);
     if (const auto order = order_after("window-", name)) return std::make_unique<const WindowUpdate>(*order);

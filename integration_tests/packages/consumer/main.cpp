@@ -20,7 +20,7 @@ int main()
     auto detector = fdi::make_detector({.method = "glt", .sigma = 1e-6, .pfa = 1e-6}, *cluster);
     if (!detector) return 2;
 
-    const auto& axes = cluster->axes();
+    const auto& axes = cluster->axes;
     const auto turn = attitude::from_rotation_vector({0.01, -0.02, 0.03});
     std::vector<double> increment;
     for (Eigen::Index i = 0; i < axes.rows(); ++i) increment.push_back(2 * axes.row(i).dot(turn.vec()) + (i == 2 ? 5e-4 : 0));
