@@ -1,6 +1,7 @@
 // Nothing is allocated per frame, whatever the method and whatever happens. (Linked with --wrap=malloc.)
 
 #include "../../geometry/test/allocation_count.hpp"
+#include "observer_scene.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
 #include "quorient/fdi/make_detector.hpp"
 #include "quorient/geometry/layouts.hpp"
@@ -42,11 +43,35 @@ TEST(FaultMonitor, allocates_nothing_per_frame)
                                           {.readmit_after_s = 0.5}, cluster);
         ASSERT_TRUE(monitor) << monitor.error();
         AxisMask isolated = 0;
-        const std::size_t before = test::allocation_count();
+        const std::size_t before = quorient::test::allocation_count();
         for (std::uint64_t sequence = 0; sequence < 1000; ++sequence)
             isolated |= monitor->assess(frame_of(cluster, sequence)).isolated_mask;
-        EXPECT_EQ(test::allocation_count(), before);
+        EXPECT_EQ(quorient::test::allocation_count(), before);
         EXPECT_EQ(isolated, 0b10U) << "the fault's own path was not taken";
+    }
+}
+
+TEST(FaultMonitor, allocates_nothing_per_frame_of_a_vessel)
+{
+    for (const auto scheme : {ObserverScheme::directional, ObserverScheme::blind}) {
+        SCOPED_TRACE(std::string(to_string(scheme)));
+        auto settings = test::paper_settings(scheme);
+        settings.threshold.reset();
+        settings.sigma = {2e-4};
+        settings.model_error = 0.05;
+        auto monitor = FaultMonitor::make(ObserverDetector::make(settings, 0.01).value(), {}, 2).value();
+        SensorFrame frame;
+        frame.interval_s = 0.01;
+        frame.valid_mask = 0b11;
+        AxisMask isolated = 0;
+        const std::size_t before = quorient::test::allocation_count();
+        for (frame.sequence = 0; frame.sequence < 2000; ++frame.sequence) {
+            frame.increment[0] = 0;
+            frame.increment[1] = frame.sequence < 500 ? 0 : 0.1 * frame.interval_s;
+            isolated |= monitor.assess(frame).isolated_mask;
+        }
+        EXPECT_EQ(quorient::test::allocation_count(), before);
+        EXPECT_EQ(isolated & 0b10U, 0b10U) << "the fault's own path was not taken";
     }
 }
 

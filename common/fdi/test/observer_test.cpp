@@ -1,4 +1,5 @@
 #include "observer_scene.hpp"
+#include "quorient/fdi/fault_monitor.hpp"
 #include "quorient/fdi/observer_design.hpp"
 
 #include <gtest/gtest.h>
@@ -520,6 +521,50 @@ TEST(ObserverDetector, warms_up_where_the_samples_do_not_tell_the_whole_state)
         state = hold.state * state + hold.input * 0.2;
     }
     EXPECT_EQ(warming, 346) << "ln(1000) / 2 s";
+}
+
+TEST(VesselMonitor, isolates_latches_and_readmits_the_papers_faults)
+{
+    const auto play = [](double gyro_fault, double accelerometer_fault) {
+        auto monitor = FaultMonitor::make(ObserverDetector::make(paper_settings(ObserverScheme::blind), 0.01).value(), {}, 2).value();
+        PaperRun run;
+        run.gyro_fault = gyro_fault;
+        run.accelerometer_fault = accelerometer_fault;
+        std::array<FaultVerdict, 3> at;  // 19 s, 40 s, 75 s
+        SensorFrame frame;
+        run.play([&](double time, const Eigen::VectorXd&, const Eigen::VectorXd& sample, double rudder) {
+            frame.interval_s = run.interval_s;
+            frame.valid_mask = 0b11;
+            frame.known_input[0] = rudder;
+            for (std::size_t channel : {std::size_t{0}, std::size_t{1}})
+                frame.increment[channel] = sample(static_cast<Eigen::Index>(channel)) * run.interval_s;
+            const FaultVerdict verdict = monitor.assess(frame);
+            if (frame.sequence == 1900) at[0] = verdict;
+            if (frame.sequence == 4000) at[1] = verdict;
+            if (frame.sequence == 4000) monitor.readmit(0b11);
+            if (time < 75.005) at[2] = verdict;
+            ++frame.sequence;
+        });
+        return at;
+    };
+    const auto faulty = play(0.01, 0.01);
+    EXPECT_EQ(faulty[0].state, static_cast<std::uint8_t>(VerdictState::healthy));
+    EXPECT_EQ(faulty[1].state, static_cast<std::uint8_t>(VerdictState::isolated)) << "latched, ten seconds after the fault ended";
+    EXPECT_EQ(faulty[1].isolated_mask, 0b10U);
+    EXPECT_NEAR(static_cast<double>(faulty[1].excluded_from[1]), 2000, 2);
+    EXPECT_EQ(faulty[1].detectable_remaining, 1) << "the model stands behind the channel that is left";
+    EXPECT_EQ(faulty[2].isolated_mask, 0b01U);
+    EXPECT_NEAR(static_cast<double>(faulty[2].excluded_from[0]), 5000, 2);
+
+    for (const FaultVerdict& verdict : play(0, 0)) EXPECT_EQ(verdict.state, static_cast<std::uint8_t>(VerdictState::healthy));
+}
+
+TEST(VesselMonitor, refuses_to_readmit_by_itself_what_has_no_direction)
+{
+    const auto monitor =
+        FaultMonitor::make(ObserverDetector::make(paper_settings(ObserverScheme::blind), 0.01).value(), {.readmit_after_s = 5}, 2);
+    ASSERT_FALSE(monitor);
+    EXPECT_NE(monitor.error().find("readmit_after_s"), std::string::npos);
 }
 
 TEST(ObserverSettings, are_refused_with_the_reason)
