@@ -71,7 +71,8 @@ void add_layout(CLI::App& program)
     const auto options = std::make_shared<LayoutOptions>();
     auto* name = verb->add_option("name", options->choice.layout, "a layout of the catalogue")->option_text("NAME");
     auto* axes = verb->add_option("--axes", options->choice.axes_file, "a file of unit vectors, one axis per row: x, y, z; '-' = stdin");
-    auto* without = verb->add_option("--without", options->without, "axes to leave out, as in 0,3")->delimiter(',');
+    auto* without =
+        verb->add_option("--without", options->without, "axes to leave out, as in 0,3")->allow_extra_args(false)->delimiter(',');
     auto* table = verb->add_flag("--table", options->table, "the papers' tables beside ours, with the reason of every difference");
     verb->add_flag("--json", options->json, "one line of JSON, 17 significant digits, null where undefined");
     axes->excludes(name);
