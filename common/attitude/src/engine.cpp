@@ -184,9 +184,9 @@ void Integrator::Engine::integrate(std::size_t index)
         const Step step = update_->step(now.count, std::span(window_).first(window_size_));
         now.attitude = renormalised(attitude_back(index, step.span) * step.rotation);
         if (record.bridge) {
-            // The coning inside a gap is a guess from its neighbours: it counts as its own uncertainty.
+            // The coning inside a gap is at best a guess from its neighbours, and over a long gap none: it counts as uncertainty.
             const double guess = angle_between(held * from_rotation_vector(record.body), now.attitude);
-            now.systematic_rad += now.count > 1 ? guess : record.body.squaredNorm() / 12;
+            now.systematic_rad += std::max(guess, record.body.squaredNorm() / 12);
         }
     }
     window_end_ = index + 1;
