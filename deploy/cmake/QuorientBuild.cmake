@@ -49,18 +49,18 @@ function(quorient_library room)
   set_target_properties(quorient_${room} PROPERTIES EXPORT_NAME ${room})
 endfunction()
 
-# quorient_test(NAME SOURCES a_test.cpp … [DEPENDS target …] [TIMEOUT seconds]): one GoogleTest program, one ctest entry per test.
+# quorient_test(NAME SOURCES a_test.cpp … [DEPENDS target …] [TIMEOUT seconds] [ENVIRONMENT name=value]): one GoogleTest program, one ctest entry per test.
 function(quorient_test name)
   if(NOT QUORIENT_TESTS)
     return()
   endif()
-  cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(arg "" "TIMEOUT;ENVIRONMENT" "SOURCES;DEPENDS" ${ARGN})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 120)
   endif()
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_DEPENDS} GTest::gtest GTest::gmock GTest::gtest_main quorient_warnings)
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT ${arg_TIMEOUT})
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT ${arg_TIMEOUT} ENVIRONMENT "${arg_ENVIRONMENT}")
 endfunction()
 
 # quorient_benchmark(NAME SOURCES a.cpp … [DEPENDS target …]): a Google Benchmark program; never a test.

@@ -36,17 +36,18 @@ void expect_every_frame_once(const Scene& scene, std::uint64_t first, std::uint6
 
 }  // namespace
 
-void* operator new(std::size_t size)
+// Not inlined: a compiler that sees through them takes malloc and delete for a mismatch.
+[[gnu::noinline]] void* operator new(std::size_t size)
 {
     ++allocations;
     if (void* memory = std::malloc(size)) return memory;
     throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept
+[[gnu::noinline]] void operator delete(void* memory) noexcept
 {
     std::free(memory);
 }
-void operator delete(void* memory, std::size_t) noexcept
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept
 {
     std::free(memory);
 }
