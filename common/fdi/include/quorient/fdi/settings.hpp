@@ -8,7 +8,7 @@ namespace quorient::fdi {
 /// Everything a user can set about detection; what is absent takes the method's default.
 /// Lengths of time in seconds, tolerances in the unit of the measurement (rad of one increment for gyros).
 struct DetectorSettings {
-    std::string method = "auto";  ///< auto: vector on 4 axes, else accumulating or glt; see make_detector
+    std::string method = "auto";  ///< auto: vector on 4 axes, else subset over instruments or glt; see make_detector
     std::optional<double> tolerance{};
     std::optional<double> sigma{};  ///< in place of the description's
     std::optional<double> pfa{};    ///< false-alarm probability of one frame
