@@ -14,17 +14,6 @@ namespace {
 /// "Decayed to nothing": below any threshold that is worth setting.
 constexpr double settled = 1e-3;
 
-/// X = F X F' + Q by doubling (Smith 1968): each step doubles the terms of the sum; F is stable.
-Eigen::MatrixXd stationary_covariance(Eigen::MatrixXd f, const Eigen::MatrixXd& q)
-{
-    Eigen::MatrixXd covariance = q;
-    for (int step = 0; step < 64 && f.norm() > 1e-12; ++step) {
-        covariance += f * covariance * f.transpose();
-        f *= f;
-    }
-    return covariance;
-}
-
 double slowest_rate(const Eigen::MatrixXd& matrix)
 {
     double rate = std::numeric_limits<double>::infinity();
@@ -85,13 +74,14 @@ tl::expected<ObserverBank, std::string> ObserverBank::make(const ObserverSetting
     if (auto checked = check_settings(settings, interval_s); !checked) return tl::unexpected(checked.error());
     ObserverBank bank(settings, interval_s);
     if (auto designed = bank.design(settings); !designed) return tl::unexpected(designed.error());
-    bank.set_noise_limits(settings);
+    bank.set_noise(settings);
     if (settings.scheme == ObserverScheme::directional) bank.set_attribution_frames();
     return bank;
 }
 
 ObserverBank::ObserverBank(const ObserverSettings& settings, double interval_s)
     : plant_(settings.plant),
+      a_(settings.plant.a),
       b_(settings.plant.b),
       c_(settings.plant.c),
       scheme_(settings.scheme),
@@ -182,27 +172,33 @@ void ObserverBank::add(AxisMask channels, const Eigen::MatrixXd& gain)
     observer.drive = hold.input;
     observer.estimate = State::Zero(n);
     observer.residual = observer.limit = observer.noise_limit = observer.direction = Outputs::Zero(plant_.outputs());
-    observer.sensitivity = Sensitivity::Zero(n, static_cast<Eigen::Index>(parameters_.size()));
+    observer.sensitivity = Sensitivity::Zero(n, static_cast<Eigen::Index>(parameters_.size()) + 1);
     if (scheme_ == ObserverScheme::directional) observer.direction = (plant_.c * gain.col(std::countr_zero(channels))).normalized();
 }
 
-void ObserverBank::set_noise_limits(const ObserverSettings& settings)
+void ObserverBank::set_noise(const ObserverSettings& settings)
 {
-    const Eigen::Index p = plant_.outputs();
-    Eigen::VectorXd variance(p);
-    for (Eigen::Index channel = 0; channel < p; ++channel)
-        variance(channel) = std::pow(sigma_of(settings, static_cast<std::size_t>(channel)), 2);
-    const auto compared = static_cast<double>(scheme_ == ObserverScheme::directional ? p : p * (p - 1));
-    const double z = normal_quantile(settings.false_alarm_probability / (2 * compared));
+    variance_.resize(plant_.outputs());
+    for (std::size_t channel = 0; channel < channels(); ++channel)
+        variance_(static_cast<Eigen::Index>(channel)) = std::pow(sigma_of(settings, channel), 2);
+    const auto p = static_cast<double>(channels());
+    const double compared = scheme_ == ObserverScheme::directional ? p : p * (p - 1);
+    z_ = normal_quantile(settings.false_alarm_probability / (2 * compared));
     for (Observer& observer : observers_) {
         const Eigen::MatrixXd drive = observer.drive * observer.gain;
-        const Eigen::MatrixXd error = stationary_covariance(observer.state, drive * variance.asDiagonal() * drive.transpose());
-        Eigen::MatrixXd residual = plant_.c * error * plant_.c.transpose();
-        residual.diagonal() += variance;
-        observer.noise_limit = z * residual.diagonal().cwiseSqrt();
-        observer.metric_noise_limit = z * std::sqrt(observer.direction.dot(residual * observer.direction));
-        set_limits(observer);
+        observer.disturbance = drive * variance_.asDiagonal() * drive.transpose();
     }
+    start(Outputs::Zero(plant_.outputs()));
+}
+
+/// var r = C P C' + R
+void ObserverBank::set_noise_limits(Observer& observer) const
+{
+    OutputMatrix variance = c_.lazyProduct(OutputMatrix(observer.covariance.lazyProduct(c_.transpose())));
+    variance.diagonal() += variance_;
+    observer.noise_limit = z_ * variance.diagonal().cwiseSqrt();
+    if (scheme_ != ObserverScheme::directional) return;
+    observer.metric_noise_limit = z_ * std::sqrt(observer.direction.dot(Outputs(variance.lazyProduct(observer.direction))));
 }
 
 /// The response of all observers to a step on each channel, until it has settled: e' = (A - K C) e - K f, r = C e + f.
@@ -248,6 +244,8 @@ void ObserverBank::start(const Outputs& samples)
         observer.estimate = from_samples_.lazyProduct(samples);
         observer.residual.setZero();
         observer.sensitivity.setZero();
+        observer.covariance = from_samples_.lazyProduct(SmallMatrix(variance_.asDiagonal() * from_samples_.transpose()));
+        set_noise_limits(observer);
         set_limits(observer);
     }
 }
@@ -271,16 +269,27 @@ void ObserverBank::advance(const Inputs& input)
         const Outputs held = observer.residual + c_.lazyProduct(observer.estimate);
         const State driven = observer.correct.lazyProduct(held) + b_.lazyProduct(input);
         const State next = observer.state.lazyProduct(observer.estimate) + observer.drive.lazyProduct(driven);
-        if (!parameters_.empty()) {
-            observer.sensitivity = Sensitivity(observer.state.lazyProduct(observer.sensitivity));
-            for (std::size_t index = 0; index < parameters_.size(); ++index) {
-                const Parameter& parameter = parameters_[index];
-                const Eigen::Index n = plant_.states();
-                const double value = parameter.column < n ? observer.estimate(parameter.column) : input(parameter.column - n);
-                observer.sensitivity.col(static_cast<Eigen::Index>(index)) += observer.drive.col(parameter.row) * (parameter.size * value);
-            }
+        if (!threshold_) {
+            advance_sensitivity(observer, input);
+            observer.covariance = observer.state.lazyProduct(StateMatrix(observer.covariance.lazyProduct(observer.state.transpose())));
+            observer.covariance += observer.disturbance;
+            set_noise_limits(observer);
         }
         observer.estimate = next;
+    }
+}
+
+void ObserverBank::advance_sensitivity(Observer& observer, const Inputs& input) const
+{
+    const State motion = a_.lazyProduct(observer.estimate) + b_.lazyProduct(input);
+    const Outputs held_back = c_.lazyProduct(motion) * (interval_s_ / 2);
+    observer.sensitivity = Sensitivity(observer.state.lazyProduct(observer.sensitivity));
+    observer.sensitivity.col(0) += observer.drive.lazyProduct(State(observer.correct.lazyProduct(held_back)));
+    for (std::size_t index = 0; index < parameters_.size(); ++index) {
+        const Parameter& parameter = parameters_[index];
+        const Eigen::Index states = plant_.states();
+        const double value = parameter.column < states ? observer.estimate(parameter.column) : input(parameter.column - states);
+        observer.sensitivity.col(static_cast<Eigen::Index>(index) + 1) += observer.drive.col(parameter.row) * (parameter.size * value);
     }
 }
 
@@ -296,13 +305,14 @@ void ObserverBank::set_limits(Observer& observer) const
         observer.metric_limit = *threshold_;
         return;
     }
-    observer.limit = observer.noise_limit;
-    observer.metric_limit = observer.metric_noise_limit;
-    if (parameters_.empty()) return;
     const OutputSensitivity change = c_.lazyProduct(observer.sensitivity);
-    observer.limit += model_error_ * change.cwiseAbs().rowwise().sum();
-    if (scheme_ == ObserverScheme::directional)
-        observer.metric_limit += model_error_ * observer.direction.transpose().lazyProduct(change).cwiseAbs().sum();
+    const Eigen::Index parameters = change.cols() - 1;
+    observer.limit =
+        observer.noise_limit + change.col(0).cwiseAbs() + model_error_ * change.rightCols(parameters).cwiseAbs().rowwise().sum();
+    if (scheme_ != ObserverScheme::directional) return;
+    double uncertain = 0;
+    for (Eigen::Index index = 1; index <= parameters; ++index) uncertain += std::abs(observer.direction.dot(change.col(index)));
+    observer.metric_limit = observer.metric_noise_limit + std::abs(observer.direction.dot(change.col(0))) + model_error_ * uncertain;
 }
 
 }  // namespace quorient::fdi

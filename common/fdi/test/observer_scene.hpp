@@ -40,6 +40,7 @@ struct PaperRun {
     unsigned seed = 1;
     double gyro_fault = 0.01;
     double accelerometer_fault = 0.01;
+    double rudder_rad = 0.01;
     double interval_s = 0.01;
     double duration_s = 80;
 
@@ -53,7 +54,7 @@ struct PaperRun {
         const auto frames = static_cast<int>(std::lround(duration_s / interval_s));
         for (int k = 0; k <= frames; ++k) {
             const double time = k * interval_s;
-            const double rudder = 0.01 * std::sin(2 * std::numbers::pi * time / 20);
+            const double rudder = rudder_rad * std::sin(2 * std::numbers::pi * time / 20);
             Eigen::VectorXd sample = plant.c * state;
             if (k >= 2000 && k < 3000) sample(1) += gyro_fault;
             if (k >= 5000 && k < 7000) sample(0) += accelerometer_fault;

@@ -37,13 +37,13 @@ struct ObserverSettings {
 /// Observer:  xh' = (A - K C) xh + B u + K y,  r = y - C xh, with y and u held over an interval (exact discretisation).
 /// For y = x + f the residual is r = C e + f, feedthrough included. [paper 001, eqs 10-12 corrected, methods.md 001]
 ///
-/// Limit of a residual: z sigma_r + model_error * sum over the entries p of A and B of |dr/dp| |p|. sigma_r is the residual's stationary
-/// standard deviation (discrete Lyapunov equation), z the normal quantile that shares the false-alarm probability among all
-/// residuals compared in one frame; dr/dp runs along with the observer, so the limit breathes with the motion.
+/// Limit of a residual: z sigma_r + h/2 |dr/dh| + model_error * sum over the entries p of A and B of |dr/dp| |p|.
+/// sigma_r is the residual's standard deviation, propagated from the start (noisy samples) to its stationary value, z the normal
+/// quantile that shares the false-alarm probability among all residuals compared in one frame. A moving plant leaves residuals of the order
+/// K x' h because samples are held (1e-5 in the paper's run at 100 Hz): dr/dh. The sensitivities run along with the observer, so the limit
+/// breathes with the motion.
 ///
-/// Not guaranteed: samples are held, so a moving plant leaves residuals of the order K x' h even without fault (1e-5 in the paper's run
-/// at 100 Hz); model_error is what covers them. The model error counts to first order; a plant that is wrong in its structure raises
-/// alarms.
+/// Not guaranteed: the model error counts to first order; a plant that is wrong in its structure raises alarms.
 class ObserverBank {
 public:
     using State = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, max_states, 1>;
@@ -90,11 +90,12 @@ public:
     std::uint64_t settling_frames() const { return settling_frames_; }
 
 private:
-    static constexpr int max_parameters = max_states * (max_states + max_inputs);
+    static constexpr int max_parameters = max_states * (max_states + max_inputs) + 1;
     using StateMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, max_states, max_states>;
     using Sensitivity = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, max_states, max_parameters>;
     using OutputSensitivity = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, max_outputs, max_parameters>;
 
+    using OutputMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, max_outputs, max_outputs>;
     using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, max_states, max_outputs>;
 
     struct Observer {
@@ -106,11 +107,13 @@ private:
         State estimate;        ///< xh
         Outputs residual;
         Outputs limit;
-        Outputs noise_limit;  ///< z sigma_r
-        Outputs direction;    ///< l / |l|; directional
+        Outputs noise_limit;      ///< z sigma_r
+        StateMatrix covariance;   ///< of the error
+        StateMatrix disturbance;  ///< what one interval of noise adds to it
+        Outputs direction;        ///< l / |l|; directional
         double metric_noise_limit = 0;
         double metric_limit = 0;
-        Sensitivity sensitivity;  ///< dxh/dp |p|, one column per entry of A and B that is not 0
+        Sensitivity sensitivity;  ///< of the error: h/2 d/dh, then p d/dp for every entry of A and B that is not 0
     };
 
     /// One entry of A (column < n) or B that may be wrong.
@@ -125,16 +128,20 @@ private:
     tl::expected<void, std::string> design_directional(const ObserverSettings& settings);
     tl::expected<void, std::string> design_blind(const ObserverSettings& settings);
     void add(AxisMask channels, const Eigen::MatrixXd& gain);
-    void set_noise_limits(const ObserverSettings& settings);
+    void set_noise(const ObserverSettings& settings);
+    void set_noise_limits(Observer& observer) const;
     void set_attribution_frames();
     void set_limits(Observer& observer) const;
+    void advance_sensitivity(Observer& observer, const Inputs& input) const;
 
     LinearPlant plant_;
-    SmallMatrix b_, c_;
+    SmallMatrix a_, b_, c_;
     ObserverScheme scheme_;
     double interval_s_;
     double model_error_;
     std::optional<double> threshold_;
+    double z_ = 0;
+    Outputs variance_;  ///< of one sample's noise
     std::uint64_t settling_frames_ = 0;
     std::uint64_t attribution_frames_ = 0;
     SmallMatrix from_samples_;  ///< pseudo-inverse of C
