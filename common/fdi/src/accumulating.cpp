@@ -10,238 +10,315 @@
 namespace quorient::fdi {
 namespace {
 
-constexpr std::array<std::size_t, 18> windows{1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, Accumulating::longest_window};
+constexpr std::array<std::size_t, Accumulating::window_count> windows{1,  2,  3,  4,  6,   8,   12,  16,  24,
+                                                                      32, 48, 64, 96, 128, 192, 256, 384, Accumulating::longest_window};
 
 /// A window is looked at this often in its own length: what is in between differs little.
 constexpr std::size_t looks_per_window = 8;
 
-/// An axis this close to its range may be beyond it; so are its neighbours in time, for the sensor has a bandwidth.
+/// An axis this close to its range may be beyond it; its frame and the next one (the sensor's filter remembers) are held out.
 constexpr double saturation = 0.975;
-constexpr unsigned frames_held_out = 4;
+constexpr unsigned frames_held_out = 2;
 
-constexpr double calming = 1.0 / 16;  ///< per frame, of the wildness
+/// A blow: in the frame in which a motion begins the acceleration is larger than its mean over the frame shows, its square by up to
+/// this (and one). Bounds the knocks between the poses of the MIMU4444 recordings.
+constexpr double blow_excess = 16;
+
+/// How fast the memory of a wild moment fades, per frame.
+constexpr double calming = 1.0 / 16;
+
+/// Share of the roughness that lowers a frame's weight: most frames are not the outliers that it stands for.
+constexpr double roughness_in_weight = 0.01;
 
 constexpr double default_margin = 1.25;
 constexpr double default_false_alarms_per_hour = 0.1;
 
-constexpr std::size_t stride_of(std::size_t window) { return std::max<std::size_t>(1, window / looks_per_window); }
-
-/// A small symmetric matrix over the axes of one instrument. Never on the heap.
-using BlockMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, static_cast<int>(max_axes), static_cast<int>(max_axes)>;
-
-double looks_per_frame()
+constexpr std::size_t stride_of(std::size_t window)
 {
-    double looks = 0;
-    for (const std::size_t window : windows) looks += 1 / static_cast<double>(stride_of(window));
-    return looks;
+    return std::max<std::size_t>(1, window / looks_per_window);
 }
 
 }  // namespace
 
+MotionNoise usual_motion_noise(const geometry::SensorCluster& cluster)
+{
+    const double rate_sigma = std::sqrt((cluster.sigma.cwiseAbs2() + cluster.quantum.cwiseAbs2() / 6).mean()) / cluster.interval_s;
+    return {.jitter_along_s = 0.0084 * cluster.interval_s,
+            .jitter_across_s = 0.0046 * cluster.interval_s,
+            .roughness_s = 0.028 * cluster.interval_s,
+            .rate_error = 2e-4,
+            .bias_floor_rad_s = 0.16 * rate_sigma};
+}
+
 tl::expected<std::unique_ptr<Accumulating>, std::string> Accumulating::make(const DetectorSettings& settings,
-                                                                            const geometry::SensorCluster& cluster, const MotionNoise& motion)
+                                                                            const geometry::SensorCluster& cluster)
+{
+    return make(settings, cluster, cluster.interval_s > 0 ? usual_motion_noise(cluster) : MotionNoise{});
+}
+
+tl::expected<std::unique_ptr<Accumulating>, std::string> Accumulating::make(const DetectorSettings& settings,
+                                                                            const geometry::SensorCluster& cluster,
+                                                                            const MotionNoise& motion)
 {
     if (const auto figures = check_figures(settings); !figures) return tl::unexpected(figures.error());
-    if (const auto enough = require_axes(cluster, 4, "accumulating"); !enough) return tl::unexpected(enough.error());
     if (const auto pfa = false_alarm_probability(settings); !pfa) return tl::unexpected(pfa.error());
     if (const auto sigma = sigma_of_axes(settings, cluster); !sigma) return tl::unexpected(sigma.error());
-    for (const double figure : {motion.jitter_along_s, motion.jitter_across_s, motion.rate_error, motion.bias_floor_rad_s, motion.lag_s})
-        if (!(figure >= 0 && std::isfinite(figure))) return tl::unexpected(std::string("accumulating: the motion noise must be finite and at least 0"));
-    return std::unique_ptr<Accumulating>(new Accumulating(settings, cluster, motion));
+    if (!(cluster.interval_s > 0))
+        return tl::unexpected(std::string("accumulating: false alarms are counted per hour, so the cluster's interval_s must be known"));
+    for (const double figure :
+         {motion.jitter_along_s, motion.jitter_across_s, motion.roughness_s, motion.rate_error, motion.bias_floor_rad_s})
+        if (!(figure >= 0 && std::isfinite(figure)))
+            return tl::unexpected(std::string("accumulating: the terms of the motion noise must be finite and at least 0"));
+    std::unique_ptr<Accumulating> made(new Accumulating(settings, cluster, motion));
+    if (const std::string problem = made->form_instruments(); !problem.empty()) return tl::unexpected("accumulating: " + problem);
+    return made;
 }
 
 Accumulating::Accumulating(const DetectorSettings& settings, const geometry::SensorCluster& cluster, const MotionNoise& motion)
-    : cluster_(cluster), variance_(sigma_of_axes(settings, cluster)->cwiseAbs2()), motion_(motion), instruments_(settings.instruments),
-      margin_(settings.margin.value_or(default_margin)), totals_(history_length)
+    : cluster_(cluster),
+      variance_(sigma_of_axes(settings, cluster)->cwiseAbs2()),
+      motion_(motion),
+      instruments_alone_(settings.instruments),
+      margin_(settings.margin.value_or(default_margin)),
+      totals_(history_length)
 {
     const double frames_per_hour = 3600 / cluster.interval_s;
     false_alarms_per_hour_ = settings.pfa ? *settings.pfa * frames_per_hour : default_false_alarms_per_hour;
-    const double tests_per_hour = frames_per_hour * looks_per_frame() * static_cast<double>(cluster.size());
-    for (unsigned dof = 1; dof <= max_axes; ++dof)
-        threshold_[dof] = chi_square_quantile(dof, std::min(0.5, false_alarms_per_hour_ / tests_per_hour));
-    for (Totals& totals : totals_) totals.angle = geometry::AxisVector::Zero(cluster.axes.rows());
-    blocks_.reserve(max_axes);
-    form();
+    const double hypotheses = static_cast<double>(cluster.size()) * 4 / 3;  // every axis, and every instrument
+    for (std::size_t i = 0; i < windows.size(); ++i) {
+        const double looks_per_hour = frames_per_hour / static_cast<double>(stride_of(windows[i]));
+        const double share = false_alarms_per_hour_ / static_cast<double>(windows.size());
+        const double tail = std::min(0.5, share / (looks_per_hour * hypotheses));
+        limits_[i] = {.axis = chi_square_quantile(1, tail), .instrument = chi_square_quantile(3, tail)};
+    }
 }
 
-void Accumulating::form()
+std::string Accumulating::form_instruments()
 {
-    working_ = cluster_.all() & ~excluded_;
-    detectable_remaining_ = instruments_ ? geometry::detectable_instruments_with(cluster_.axes, cluster_.instrument, working_)
-                                         : geometry::detectable_with(cluster_.axes, working_);
-    blocks_.clear();
-    std::array<std::size_t, max_axes> place{};
-    place.fill(max_axes);
-    geometry::Axes weighted = geometry::Axes::Zero(cluster_.axes.rows(), 3);
+    const std::size_t count = 1 + *std::max_element(cluster_.instrument.begin(), cluster_.instrument.end());
+    instruments_.resize(count);
     for (std::size_t axis = 0; axis < cluster_.size(); ++axis) {
-        if (!has_axis(working_, axis)) continue;
-        std::size_t& block = place[cluster_.instrument[axis]];
-        if (block == max_axes) {
-            block = blocks_.size();
-            blocks_.emplace_back();
-        }
-        blocks_[block].axis[static_cast<std::size_t>(blocks_[block].size++)] = static_cast<Eigen::Index>(axis);
-        const auto i = static_cast<Eigen::Index>(axis);
-        weighted.row(i) = cluster_.axes.row(i) / variance_(i);
+        Instrument& instrument = instruments_[cluster_.instrument[axis]];
+        instrument.axis[instrument.size++] = axis;
+        instrument.mask |= axis_bit(axis);
     }
-    const Eigen::Matrix3d information = weighted.transpose() * cluster_.axes;
-    if (geometry::rank_of(cluster_.axes, working_) == 3) least_squares_ = information.inverse() * weighted.transpose();
-    else least_squares_ = decltype(least_squares_)::Zero(3, cluster_.axes.rows());
+    std::erase_if(instruments_, [](const Instrument& instrument) { return instrument.size == 0; });
+    if (instruments_.size() < 2) return "needs two or more instruments, this cluster has one";
+    mean_covariance_.setZero();
+    for (Instrument& instrument : instruments_) {
+        if (geometry::rank_of(cluster_.axes, instrument.mask) < 3)
+            return "compares instruments that each measure all three directions; these axes do not: use glt or subset";
+        const auto n = static_cast<Eigen::Index>(instrument.size);
+        Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, static_cast<int>(max_axes)> weighted(3, n);
+        Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+        for (Eigen::Index i = 0; i < n; ++i) {
+            const auto axis = static_cast<Eigen::Index>(instrument.axis[static_cast<std::size_t>(i)]);
+            weighted.col(i) = cluster_.axes.row(axis).transpose() / variance_(axis);
+            information += weighted.col(i) * cluster_.axes.row(axis);
+        }
+        instrument.covariance = information.inverse();
+        instrument.body_from_axes = instrument.covariance * weighted;
+        mean_covariance_ += instrument.covariance / static_cast<double>(instruments_.size());
+    }
+    mean_information_ = mean_covariance_.inverse();
+    scale_ = 3 / mean_information_.trace();
+    for (Totals& totals : totals_) totals.sum.setZero(3, static_cast<Eigen::Index>(instruments_.size()));
+    return {};
+}
+
+unsigned Accumulating::detectable_remaining() const
+{
+    const auto left = std::count_if(instruments_.begin(), instruments_.end(), [this](const Instrument& i) { return compared(i); });
+    return left >= 2 ? 1 : 0;
 }
 
 void Accumulating::exclude(AxisMask excluded)
 {
     if ((excluded & cluster_.all()) == excluded_) return;
     excluded_ = excluded & cluster_.all();
-    form();
+    pending_.reset();
 }
 
 void Accumulating::reset()
 {
     size_ = 0;
-    next_ = 0;
     held_out_ = 0;
     alert_ = false;
-    previous_rate_.reset();
-    previous_acceleration_.setZero();
     wildness_ = 0;
+    pending_.reset();
 }
 
 bool Accumulating::usable(const Measurement& measurement)
 {
     if (held_out_ > 0) --held_out_;
-    for (std::size_t axis = 0; axis < cluster_.size(); ++axis) {
-        if (!has_axis(working_, axis)) continue;
-        if (!has_axis(measurement.valid, axis) || !std::isfinite(measurement.increment[axis])) return false;
-        const double range = cluster_.range(static_cast<Eigen::Index>(axis)) * measurement.interval_s;
-        if (range > 0 && std::abs(measurement.increment[axis]) > saturation * range) held_out_ = frames_held_out;
+    for (const Instrument& instrument : instruments_) {
+        if (!compared(instrument)) continue;
+        for (std::size_t i = 0; i < instrument.size; ++i) {
+            const std::size_t axis = instrument.axis[i];
+            if (!has_axis(measurement.valid, axis) || !std::isfinite(measurement.increment[axis])) return false;
+            const double range = cluster_.range(static_cast<Eigen::Index>(axis)) * measurement.interval_s;
+            if (range > 0 && std::abs(measurement.increment[axis]) > saturation * range) held_out_ = frames_held_out;
+        }
     }
     return held_out_ == 0 && measurement.interval_s > 0;
 }
 
-void Accumulating::take_in(const Measurement& measurement)
+Accumulating::Pending Accumulating::pending_of(const Measurement& measurement) const
 {
-    const double h = measurement.interval_s;
-    Totals& now = totals_[next_];
-    const Totals& before = size_ > 0 ? total(0) : Totals{geometry::AxisVector::Zero(cluster_.axes.rows())};
-    geometry::AxisVector z = geometry::AxisVector::Zero(cluster_.axes.rows());
-    for (std::size_t axis = 0; axis < cluster_.size(); ++axis)
-        if (has_axis(working_, axis)) z(static_cast<Eigen::Index>(axis)) = measurement.increment[axis];
-    const Eigen::Vector3d rate = least_squares_ * z / h;
-    const Eigen::Vector3d acceleration = previous_rate_ ? Eigen::Vector3d((rate - *previous_rate_) / h) : Eigen::Vector3d::Zero();
-    const Eigen::Matrix3d spread =
-        (acceleration * acceleration.transpose() + previous_acceleration_ * previous_acceleration_.transpose()) / 2;
-
-    now.angle = before.angle + z;
-    // Where the acceleration passes through zero the errors do not: they follow how wild the motion has been lately.
-    wildness_ = std::max(acceleration.squaredNorm(), wildness_ + (acceleration.squaredNorm() - wildness_) * calming);
-    now.jitter = before.jitter + h * h * spread;
-    now.wildness = before.wildness + h * h * wildness_;
-    now.rate = rate;
-    now.time_s = before.time_s + h;
-    now.turned_rad = before.turned_rad + rate.norm() * h;
-    now.sequence = measurement.identity.sequence;
-    previous_rate_ = rate;
-    previous_acceleration_ = acceleration;
-    next_ = (next_ + 1) % history_length;
-    size_ = std::min(size_ + 1, history_length);
+    Pending frame;
+    frame.sequence = measurement.identity.sequence;
+    frame.interval_s = measurement.interval_s;
+    frame.body.setZero(3, static_cast<Eigen::Index>(instruments_.size()));
+    double left = 0;
+    for (std::size_t m = 0; m < instruments_.size(); ++m) {
+        const Instrument& instrument = instruments_[m];
+        if (!compared(instrument)) continue;
+        auto body = frame.body.col(static_cast<Eigen::Index>(m));
+        for (std::size_t i = 0; i < instrument.size; ++i)
+            body += instrument.body_from_axes.col(static_cast<Eigen::Index>(i)) * measurement.increment[instrument.axis[i]];
+        frame.rate += body / measurement.interval_s;
+        left += 1;
+    }
+    frame.rate /= left;
+    return frame;
 }
 
-Accumulating::Finding Accumulating::examine(std::size_t window) const
+Eigen::Matrix3d Accumulating::motion_covariance(const Pending& frame, const Eigen::Vector3d& acceleration_after, double blow,
+                                                double rough) const
+{
+    const Eigen::Vector3d& a = frame.acceleration_before;
+    const Eigen::Vector3d& b = acceleration_after;
+    const double h = frame.interval_s;
+    const double along = motion_.jitter_along_s * motion_.jitter_along_s;
+    const double across = motion_.jitter_across_s * motion_.jitter_across_s;
+    const Eigen::Matrix3d spread = h * h * (a * a.transpose() + b * b.transpose()) / 2;
+    const double outliers = roughness_in_weight * motion_.roughness_s * motion_.roughness_s * rough;
+    return blow * (along - across) * spread + (blow * across * spread.trace() + outliers) * Eigen::Matrix3d::Identity();
+}
+
+void Accumulating::take_in(const Pending& frame, const Eigen::Vector3d& acceleration_after)
+{
+    const double h = frame.interval_s;
+    const double squared = std::max(frame.acceleration_before.squaredNorm(), acceleration_after.squaredNorm());
+    const double blow = squared > wildness_ ? 1 + blow_excess * (1 - wildness_ / squared) : 1;
+    // Where the acceleration passes through zero the errors do not: they follow how wild the motion has been lately.
+    wildness_ = std::max(squared * blow, wildness_ + (squared - wildness_) * calming);
+    const double rough = h * h * wildness_;
+    const Eigen::Matrix3d weight = scale_ * (mean_covariance_ + motion_covariance(frame, acceleration_after, blow, rough)).inverse();
+    const double resting = weight.trace() / 3;
+
+    const Totals& before = total(0);
+    Totals& now = totals_[next_];
+    now.sum = before.sum + weight * frame.body;
+    now.weight = before.weight + weight;
+    now.biased = before.biased + weight * h;
+    now.turned = before.turned + weight * (frame.rate.norm() * h);
+    now.rest = before.rest + resting * resting;
+    now.roughness = resting * resting * rough;
+    now.sequence = frame.sequence;
+    next_ = (next_ + 1) % history_length;
+    size_ = std::min(size_ + 1, history_length);
+    ++frames_;
+}
+
+Eigen::Matrix3d Accumulating::common_covariance(std::size_t window) const
 {
     const Totals& newest = total(0);
     const Totals& oldest = total(window);
-    const geometry::AxisVector z = newest.angle - oldest.angle;
-    const Eigen::Matrix3d jitter = newest.jitter - oldest.jitter;
-    const Eigen::Vector3d change = newest.rate - oldest.rate;
-    const double time_s = newest.time_s - oldest.time_s;
-    const double floor = motion_.bias_floor_rad_s * time_s + motion_.rate_error * (newest.turned_rad - oldest.turned_rad);
-    const double across = motion_.jitter_across_s * motion_.jitter_across_s;
-    const double along = motion_.jitter_along_s * motion_.jitter_along_s;
-    const Eigen::Matrix3d motion = (along - across) * jitter + across * (newest.wildness - oldest.wildness) * Eigen::Matrix3d::Identity() +
-                                   motion_.lag_s * motion_.lag_s * change * change.transpose();
+    const Eigen::Matrix3d constant =
+        motion_.bias_floor_rad_s * (newest.biased - oldest.biased) + motion_.rate_error * (newest.turned - oldest.turned);
+    double roughest = 0;
+    for (std::size_t age = 0; age < window; ++age) roughest = std::max(roughest, total(age).roughness);
+    const double outlier = motion_.roughness_s * motion_.roughness_s * roughest;
+    return scale_ * (newest.weight - oldest.weight) + constant * constant.transpose() + outlier * Eigen::Matrix3d::Identity();
+}
 
-    // Per instrument: cov^-1 H and cov^-1 z; together the information of the motion.
-    std::array<Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::ColMajor, static_cast<int>(max_axes), 4>, max_axes> weighted;
-    std::array<BlockMatrix, max_axes> inverse;
-    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d evidence = Eigen::Vector3d::Zero();
-    for (std::size_t b = 0; b < blocks_.size(); ++b) {
-        const Block& block = blocks_[b];
-        Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::ColMajor, static_cast<int>(max_axes), 4> hz(block.size, 4);
-        BlockMatrix covariance(block.size, block.size);
-        for (Eigen::Index i = 0; i < block.size; ++i) hz.row(i) << cluster_.axes.row(block.axis[static_cast<std::size_t>(i)]), z(block.axis[static_cast<std::size_t>(i)]);
-        covariance.noalias() = hz.leftCols<3>() * motion * hz.leftCols<3>().transpose();
-        for (Eigen::Index i = 0; i < block.size; ++i)
-            covariance(i, i) += static_cast<double>(window) * variance_(block.axis[static_cast<std::size_t>(i)]) + floor * floor;
-        inverse[b] = covariance.inverse();
-        weighted[b] = inverse[b] * hz;
-        const Eigen::Matrix<double, 3, 4> sums = hz.leftCols<3>().transpose() * weighted[b];
-        information += sums.leftCols<3>();
-        evidence += sums.col(3);
+Accumulating::Finding Accumulating::examine(std::size_t window, const Limits& limits) const
+{
+    const Totals& newest = total(0);
+    const Totals& oldest = total(window);
+    const Eigen::Matrix3d common = common_covariance(window);
+    const Eigen::Matrix3d weight = newest.weight - oldest.weight;
+    const double rest = scale_ * scale_ * (newest.rest - oldest.rest);
+
+    std::array<Eigen::Matrix3d, max_instruments> information;
+    std::array<Eigen::Vector3d, max_instruments> value;
+    Eigen::Matrix3d total_information = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d total_value = Eigen::Vector3d::Zero();
+    for (std::size_t m = 0; m < instruments_.size(); ++m) {
+        if (!compared(instruments_[m])) continue;
+        const auto column = static_cast<Eigen::Index>(m);
+        const Eigen::Matrix3d own = mean_information_ * (instruments_[m].covariance - mean_covariance_) * mean_information_;
+        value[m] = newest.sum.col(column) - oldest.sum.col(column);
+        information[m] = (common + rest * own).inverse();
+        total_information += information[m];
+        total_value += information[m] * value[m];
     }
-    const Eigen::Matrix3d covariance = information.inverse();
-    const Eigen::Vector3d theta = covariance * evidence;
+    const Eigen::Matrix3d covariance = total_information.inverse();
+    const Eigen::Vector3d fused = covariance * total_value;
 
-    Finding finding{.window = window};
-    const auto consider = [&](double t, Eigen::Index dof, std::size_t hypothesis) {
-        const double certainty = std::sqrt(std::max(0.0, t) / threshold_[static_cast<std::size_t>(dof)]);
-        if (certainty > finding.certainty) {
-            finding.second = finding.certainty;
-            finding.runner_up = finding.best;
-            finding.certainty = certainty;
-            finding.best = hypothesis;
-        } else if (certainty > finding.second) {
-            finding.second = certainty;
-            finding.runner_up = hypothesis;
-        }
-    };
-    for (std::size_t b = 0; b < blocks_.size(); ++b) {
-        const Block& block = blocks_[b];
-        const geometry::AxisVector u = weighted[b].col(3) - weighted[b].leftCols<3>() * theta;
-        const BlockMatrix q = inverse[b] - weighted[b].leftCols<3>() * covariance * weighted[b].leftCols<3>().transpose();
-        if (instruments_) {
-            const geometry::AxisVector explained = q.ldlt().solve(u);
-            consider(u.dot(explained), block.size, b);
-        } else {
-            for (Eigen::Index i = 0; i < block.size; ++i)
-                consider(u(i) * u(i) / q(i, i), 1, static_cast<std::size_t>(block.axis[static_cast<std::size_t>(i)]));
-        }
+    Finding finding;
+    finding.window = window;
+    finding.limits = limits;
+    for (std::size_t m = 0; m < instruments_.size(); ++m) {
+        if (!compared(instruments_[m])) continue;
+        const Contradiction contradiction{.u = information[m] * (value[m] - fused),
+                                          .q = information[m] - information[m] * covariance * information[m]};
+        weigh(instruments_[m], contradiction, weight, limits, finding);
     }
     return finding;
+}
+
+void Accumulating::Finding::consider(double with_certainty, AxisMask axes)
+{
+    if (with_certainty > certainty) {
+        second = certainty;
+        runner_up = best;
+        certainty = with_certainty;
+        best = axes;
+    } else if (with_certainty > second) {
+        second = with_certainty;
+        runner_up = axes;
+    }
+}
+
+void Accumulating::weigh(const Instrument& instrument, const Contradiction& contradiction, const Eigen::Matrix3d& weight,
+                         const Limits& limits, Finding& finding) const
+{
+    const auto& [u, q] = contradiction;
+    double most = 0;
+    for (std::size_t i = 0; i < instrument.size; ++i) {
+        const Eigen::Vector3d direction = weight * instrument.body_from_axes.col(static_cast<Eigen::Index>(i));
+        const double explained = std::pow(direction.dot(u), 2) / direction.dot(q * direction);
+        const double certainty = std::sqrt(explained / limits.axis);
+        most = std::max(most, certainty);
+        if (!instruments_alone_) finding.consider(certainty, axis_bit(instrument.axis[i]));
+    }
+    if (!instruments_alone_) return;
+    const double explained = std::max(0.0, u.dot(q.inverse() * u));
+    finding.consider(std::max(most, std::sqrt(explained / limits.instrument)), instrument.mask);
 }
 
 Accumulating::Finding Accumulating::most_certain()
 {
     Finding most;
-    for (const std::size_t window : windows) {
-        if (window >= size_) break;
-        if (!alert_ && frames_ % stride_of(window) != 0) continue;
-        const Finding finding = examine(window);
+    for (std::size_t i = 0; i < windows.size() && windows[i] < size_; ++i) {
+        if (!alert_ && frames_ % stride_of(windows[i]) != 0) continue;
+        const Finding finding = examine(windows[i], limits_[i]);
         if (finding.certainty > most.certainty) most = finding;
     }
     alert_ = most.certainty > 1;
     return most;
 }
 
-AxisMask Accumulating::axes_of(std::size_t hypothesis) const
-{
-    if (!instruments_) return axis_bit(hypothesis);
-    AxisMask axes = 0;
-    const Block& block = blocks_[hypothesis];
-    for (Eigen::Index i = 0; i < block.size; ++i) axes |= axis_bit(static_cast<std::size_t>(block.axis[static_cast<std::size_t>(i)]));
-    return axes;
-}
-
 std::uint64_t Accumulating::onset_of(const Finding& finding) const
 {
     std::size_t likeliest = finding.window;
     double certainty = finding.certainty;
-    const std::size_t shortest = std::max<std::size_t>(1, finding.window / 2);
     const std::size_t longest = std::min({size_ - 1, finding.window * 2, longest_window});
-    const std::size_t step = std::max<std::size_t>(1, finding.window / 16);
-    for (std::size_t window = shortest; window <= longest; window += step) {
-        const Finding other = examine(window);
+    const std::size_t step = stride_of(finding.window);
+    for (std::size_t window = std::max<std::size_t>(1, finding.window / 2); window <= longest; window += step) {
+        const Finding other = examine(window, finding.limits);
         if (other.best != finding.best || other.certainty <= certainty) continue;
         certainty = other.certainty;
         likeliest = window;
@@ -254,14 +331,21 @@ void Accumulating::assess(const Measurement& measurement, Assessment& assessment
     assessment = {};
     assessment.outcome = Outcome::healthy;
     assessment.threshold = 1;
+    if (detectable_remaining() == 0) return;
     if (!usable(measurement)) {
-        previous_rate_.reset();
+        pending_.reset();
         assessment.outcome = Outcome::warming_up;  // this frame tells nothing
         return;
     }
-    take_in(measurement);
-    ++frames_;
-    if (size_ < 2 || detectable_remaining_ == 0) return;
+    Pending newest = pending_of(measurement);
+    const bool followed = pending_.has_value();
+    if (followed) {
+        newest.acceleration_before = (newest.rate - pending_->rate) / measurement.interval_s;
+        take_in(*pending_, newest.acceleration_before);
+    }
+    pending_ = newest;
+    if (size_ < 2 || !followed) return;
+
     const Finding finding = most_certain();
     assessment.statistic = finding.certainty;
     window_ = finding.window;
@@ -271,14 +355,14 @@ void Accumulating::assess(const Measurement& measurement, Assessment& assessment
 void Accumulating::report(const Finding& finding, Assessment& assessment) const
 {
     assessment.onset = onset_of(finding);
+    assessment.add_candidate(finding.best);
     if (finding.certainty >= margin_ * finding.second) {
         assessment.outcome = Outcome::isolated;
-        assessment.isolated = axes_of(finding.best);
+        assessment.isolated = finding.best;
         return;
     }
     assessment.outcome = Outcome::ambiguous;
-    assessment.add_candidate(axes_of(finding.best));
-    assessment.add_candidate(axes_of(finding.runner_up));
+    assessment.add_candidate(finding.runner_up);
 }
 
 }  // namespace quorient::fdi

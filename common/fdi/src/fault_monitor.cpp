@@ -20,6 +20,7 @@ tl::expected<FaultMonitor, std::string> FaultMonitor::make(std::unique_ptr<Detec
     const auto machine = VerdictMachine::make(verdict, cluster.size());
     if (!machine) return tl::unexpected(machine.error());
     FaultMonitor monitor(std::move(detector), *machine, cluster.all());
+    monitor.health_.emplace(cluster);
     if (verdict.readmit_after_s) monitor.readmission_.emplace(cluster, *verdict.readmit_after_s);
     return monitor;
 }
@@ -42,15 +43,21 @@ FaultMonitor::FaultMonitor(std::unique_ptr<Detector> detector, const VerdictMach
 const FaultVerdict& FaultMonitor::assess(const SensorFrame& frame)
 {
     if (started_ && identity_of(frame) <= identity_of(verdict_)) return verdict_;
-    if (started_ && frame.epoch != verdict_.epoch) detector_->reset();
+    if (started_ && frame.epoch != verdict_.epoch) {
+        detector_->reset();
+        if (health_) health_->reset();
+    }
     started_ = true;
 
     const Measurement measurement = measurement_of(frame);
     if (readmission_) readmit(readmission_->watch(measurement, machine_.isolated(), all_ & ~machine_.isolated()));
-    detector_->assess(measurement, assessment_);
+    const AxisMask broken = health_ ? health_->assess(measurement) : 0;
+    Measurement sound = measurement;
+    sound.valid &= ~broken;
+    detector_->assess(sound, assessment_);
 
     const AxisMask before = machine_.isolated();
-    verdict_ = machine_.update(measurement.identity, assessment_);
+    verdict_ = machine_.update(measurement.identity, assessment_, broken);
     const AxisMask newly = machine_.isolated() & ~before;
     if (readmission_ && newly != 0) readmission_->excluded(newly, measurement, all_ & ~machine_.isolated());
     after_change(before);

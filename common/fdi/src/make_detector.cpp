@@ -1,5 +1,6 @@
 #include "quorient/fdi/make_detector.hpp"
 
+#include "quorient/fdi/accumulating.hpp"
 #include "quorient/fdi/extrapolation.hpp"
 #include "quorient/fdi/guaranteed.hpp"
 #include "quorient/fdi/invariants.hpp"
@@ -44,7 +45,7 @@ constexpr Factory factories[] = {
     {"voting", made<Voting>},           {"mean", made<Mean>},
     {"glt", made<LikelihoodRatio>},     {"parity-set", made<ParitySet>},
     {"subset", made<SubsetLikelihood>}, {"extrapolation", made<ExtrapolationDetector>},
-    {"vector", made<VectorPredictor>},
+    {"vector", made<VectorPredictor>},  {"accumulating", made<Accumulating>},
 };
 
 }  // namespace
@@ -62,6 +63,7 @@ const std::vector<MethodEntry>& methods()
         {"subset", "4 to 24", "likelihood of every set of up to max_faults axes or instruments"},
         {"extrapolation", "4", "the triad whose modulus fits the extrapolated one (the paper's method)"},
         {"vector", "4", "the triad whose body vector fits the extrapolated one"},
+        {"accumulating", "6 to 24", "instruments that each span space, compared over windows of up to 512 frames"},
     };
     return entries;
 }

@@ -14,37 +14,52 @@
 
 namespace quorient::fdi {
 
-/// How wrong the axes of a real array are beyond their noise at rest. Each term is a standard deviation.
+/// How wrong the axes of a real array are beyond their noise at rest. Each term is one standard deviation.
 struct MotionNoise {
-    double jitter_along_s = 0;      ///< times |d omega/dt|: each instrument's sampling instants wander; along d omega/dt …
-    double jitter_across_s = 0;     ///< … and across it; both independent from frame to frame and between instruments
-    double rate_error = 0;          ///< times the angle turned through: misalignment and scale that calibration left, per axis
-    double bias_floor_rad_s = 0;    ///< constant error of each axis that calibration left
-    double lag_s = 0;               ///< times the change of rate over the window: constant differences of sampling instants
+    double jitter_along_s = 0;    ///< times |d omega/dt|: each instrument's sampling instants wander; along d omega/dt …
+    double jitter_across_s = 0;   ///< … and across it; both independent between frames and between instruments
+    double roughness_s = 0;       ///< times the lately largest |d omega/dt|: outliers, which a few frames of a window dominate
+    double rate_error = 0;        ///< times the angle turned through: misalignment and scale that calibration left, per axis
+    double bias_floor_rad_s = 0;  ///< constant error of each axis that calibration left
 };
 
-/// Finds faults below the noise of a single frame: parity in the angle domain.
+/// What to expect of an array that was calibrated: fractions of its interval and of its own noise, as the two MIMU4444 recordings
+/// show them (common/fdi/README.md has the figures). Negligible beside the noise where the motion is gentle.
+MotionNoise usual_motion_noise(const geometry::SensorCluster& cluster);
+
+/// Finds faults below the noise of a single frame in an array of instruments that each measure all three directions: their body
+/// vectors are compared over several windows in parallel, as weighted sums of increments (parity in the angle domain).
 ///
-/// For each of several windows of the last W frames the increments of every axis are summed; the sums obey z = H theta + e with
-///   cov e = blockdiag over instruments m of  diag(W sigma_i^2 + floor_i^2) + H_m M H_m',
-///   M     = sum over the frames of  h^2 (tau_a^2 - tau_c^2) a a' + h^2 tau_c^2 |a|^2 I,      a = d omega / dt,
-///   floor = bias_floor T + rate_error * (angle turned through),
-/// so that the known wildness of a violent motion is discounted in the direction in which it lies. A hypothesis (one instrument,
-/// or one axis) explains  T = u' Q^-1 u  of the chi-square, with u its part of cov^-1 (z - H theta) and Q the covariance of u.
+/// Per frame k every instrument m gives theta_m = B_m z_m, with error covariance C_m (noise at rest) + M_k (motion),
+///   M_k = h^2 [(tau_a^2 - tau_c^2) a a' + tau_c^2 |a|^2 I],   a = d omega / dt,
+/// the known wildness of a violent motion, which lies along a. Each frame is weighted by W_k = c (C + M_k)^-1, C the mean of C_m: the
+/// same for all instruments (clipping each alone would destroy isolation), so that sums over a window still agree:
+///   y_m = sum W_k theta_m,k = (sum W_k theta_k) + e_m,
+///   cov e_m = c W + s C^-1 (C_m - C) C^-1 + floors + outliers,     W = sum W_k
+///   floors: bias_floor and rate_error |omega| summed as a constant error would be;  outliers: kappa^2 sqrt(sum rough_k^2).
+/// Across a turns what little is certain then counts fully, and in the calm moments all of it.
+/// A hypothesis explains  T = u' Q^-1 u  of the chi-square (Q = cov u), a single axis i the part of it along the direction W b_i.
+/// Hypotheses are axes, or with settings.instruments whole instruments: the more certain of all three directions and of its axes.
 ///
-/// False alarms are bounded over everything that is tried: every window, hypothesis and evaluation of one hour shares
-/// `false_alarms_per_hour()` (settings.pfa is per frame; default 0.1 per hour). A window is evaluated every W/8 frames, all of them in every
-/// frame while one is suspicious.
+/// False alarms are bounded over all that is tried: every window gets an equal share of false_alarms_per_hour() (settings.pfa is
+/// per frame; default 0.1 per hour), divided by its hypotheses and looks in an hour; all this before the state machine's confirmation. A
+/// window is looked at eight times in its own length, every frame while one is suspicious. statistic = largest sqrt(T / its threshold),
+/// threshold 1.
 ///
-/// Isolated where the best hypothesis exceeds the second by settings.margin (ratio of sqrt T, default 1.25) in the window that is
-/// most certain; else ambiguous. The onset is the start of the window, of any length, in which the named hypothesis is likeliest.
+/// Isolated where the best hypothesis exceeds the second by settings.margin (ratio of statistics, default 1.25) in the most certain
+/// window; else ambiguous. The onset is the start of that window, lengthened or shortened to where the hypothesis is likeliest.
 ///
-/// Frames with an axis near its range (97.5 %) and the three after them are held out: they prove nothing. saturated() tells.
+/// Each frame waits for its successor, which tells the acceleration after it: one frame of delay. Frames with an axis near its range
+/// (97.5 %) and the one after are held out: they prove nothing; saturated() tells. An instrument that has lost an axis is no
+/// longer compared.
 class Accumulating final : public Detector {
 public:
     static constexpr std::size_t longest_window = 512;  ///< frames
+    static constexpr std::size_t window_count = 18;
+    static constexpr std::size_t max_instruments = max_axes / 3;
 
-    /// Uses settings.sigma, pfa, margin, instruments, motion. @returns why not: fewer than four axes, noise unknown.
+    /// Uses settings.sigma, pfa, margin, instruments.
+    /// @returns why not: fewer than two instruments, an instrument that does not span space, noise or interval unknown.
     static tl::expected<std::unique_ptr<Accumulating>, std::string> make(const DetectorSettings& settings,
                                                                          const geometry::SensorCluster& cluster);
     static tl::expected<std::unique_ptr<Accumulating>, std::string> make(const DetectorSettings& settings,
@@ -52,69 +67,104 @@ public:
 
     void assess(const Measurement& measurement, Assessment& assessment) override;
     void exclude(AxisMask excluded) override;
-    unsigned detectable_remaining() const override { return detectable_remaining_; }
+    /// One faulty instrument, or axis, while two or more are compared.
+    unsigned detectable_remaining() const override;
     void reset() override;
 
     double false_alarms_per_hour() const { return false_alarms_per_hour_; }
-    /// The newest frame was held out because an axis was near its range.
+    /// The newest frame was held out because an axis was near its range, or had just been.
     bool saturated() const { return held_out_ > 0; }
-    /// Frames of the window that spoke last.
+    /// Length of the most certain window of the newest frame, in frames.
     std::size_t window() const { return window_; }
 
 private:
     static constexpr std::size_t history_length = 1024;
     static_assert(history_length > longest_window);
 
-    /// The axes of one instrument that are in use.
-    struct Block {
-        std::array<Eigen::Index, max_axes> axis{};
-        Eigen::Index size = 0;
+    using BodyVectors = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, static_cast<int>(max_instruments)>;
+
+    struct Instrument {
+        std::array<std::size_t, max_axes> axis{};
+        std::size_t size = 0;
+        AxisMask mask = 0;
+        Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, static_cast<int>(max_axes)> body_from_axes;  ///< B_m
+        Eigen::Matrix3d covariance;  ///< C_m, of one increment at rest
     };
 
-    /// Running totals over the frames taken in.
-    struct Totals {
-        geometry::AxisVector angle;  ///< of every axis
-        Eigen::Matrix3d jitter = Eigen::Matrix3d::Zero();  ///< sum of h^2 a a'
-        double wildness = 0;  ///< sum of h^2 |a|^2, with |a| slow to fall
-        Eigen::Vector3d rate = Eigen::Vector3d::Zero();
-        double time_s = 0;
-        double turned_rad = 0;  ///< sum of |omega| h
+    /// A frame that waits for its successor.
+    struct Pending {
         std::uint64_t sequence = 0;
+        double interval_s = 0;
+        BodyVectors body{};  ///< theta_m
+        Eigen::Vector3d rate = Eigen::Vector3d::Zero();
+        Eigen::Vector3d acceleration_before = Eigen::Vector3d::Zero();
+    };
+
+    /// Running totals over the frames taken in; a window is the difference of two.
+    struct Totals {
+        BodyVectors sum{};                                 ///< W_k theta_m
+        Eigen::Matrix3d weight = Eigen::Matrix3d::Zero();  ///< W_k
+        Eigen::Matrix3d biased = Eigen::Matrix3d::Zero();  ///< W_k h
+        Eigen::Matrix3d turned = Eigen::Matrix3d::Zero();  ///< W_k |omega| h
+        double rest = 0;                                   ///< how much of W_k is that of rest, squared
+        double roughness = 0;  ///< of this frame alone, weighted: (|W_k| / 3)^2 times the square that roughness_s^2 multiplies
+        std::uint64_t sequence = 0;
+    };
+
+    /// Of T: for one axis (one degree of freedom), for an instrument (three).
+    struct Limits {
+        double axis = 0;
+        double instrument = 0;
     };
 
     /// What one window says.
     struct Finding {
         double certainty = 0;  ///< largest sqrt(T / threshold); above 1 is suspicious
         double second = 0;     ///< of the next hypothesis
-        std::size_t best = 0;  ///< hypothesis
-        std::size_t runner_up = 0;
+        AxisMask best = 0;
+        AxisMask runner_up = 0;
         std::size_t window = 0;
+        Limits limits{};
+
+        void consider(double with_certainty, AxisMask axes);
+    };
+
+    /// The fit of one window: what one instrument contradicts the others by.
+    struct Contradiction {
+        Eigen::Vector3d u;  ///< R_m^-1 (y_m - y)
+        Eigen::Matrix3d q;  ///< cov u
     };
 
     Accumulating(const DetectorSettings& settings, const geometry::SensorCluster& cluster, const MotionNoise& motion);
 
-    void form();
+    std::string form_instruments();
+    bool compared(const Instrument& instrument) const { return (instrument.mask & excluded_) == 0; }
     bool usable(const Measurement& measurement);
-    void take_in(const Measurement& measurement);
+    Pending pending_of(const Measurement& measurement) const;
+    void take_in(const Pending& frame, const Eigen::Vector3d& acceleration_after);
+    Eigen::Matrix3d motion_covariance(const Pending& frame, const Eigen::Vector3d& acceleration_after, double blow, double rough) const;
     const Totals& total(std::size_t age) const { return totals_[(next_ + history_length - 1 - age) % history_length]; }
-    Finding examine(std::size_t window) const;
+
+    Eigen::Matrix3d common_covariance(std::size_t window) const;
+    Finding examine(std::size_t window, const Limits& limits) const;
+    void weigh(const Instrument& instrument, const Contradiction& contradiction, const Eigen::Matrix3d& weight, const Limits& limits,
+               Finding& finding) const;
     Finding most_certain();
-    AxisMask axes_of(std::size_t hypothesis) const;
     std::uint64_t onset_of(const Finding& finding) const;
     void report(const Finding& finding, Assessment& assessment) const;
 
     geometry::SensorCluster cluster_;
     geometry::AxisVector variance_;  ///< of one increment at rest
     MotionNoise motion_;
-    bool instruments_;
+    bool instruments_alone_;
     double margin_;
     double false_alarms_per_hour_ = 0;
-    std::array<double, max_axes + 1> threshold_{};  ///< of T by degrees of freedom
+    std::array<Limits, window_count> limits_{};
     AxisMask excluded_ = 0;
-    AxisMask working_ = 0;
-    unsigned detectable_remaining_ = 0;
-    std::vector<Block> blocks_;  ///< one per instrument, reserved once
-    Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, static_cast<int>(max_axes)> least_squares_;
+    std::vector<Instrument> instruments_;
+    Eigen::Matrix3d mean_covariance_;   ///< C
+    Eigen::Matrix3d mean_information_;  ///< C^-1
+    double scale_ = 0;                  ///< c: W_k has trace 3 at rest
 
     std::vector<Totals> totals_;  ///< ring
     std::size_t next_ = 0;
@@ -122,9 +172,8 @@ private:
     std::uint64_t frames_ = 0;
     unsigned held_out_ = 0;
     bool alert_ = false;
-    std::optional<Eigen::Vector3d> previous_rate_;
-    Eigen::Vector3d previous_acceleration_ = Eigen::Vector3d::Zero();
-    double wildness_ = 0;
+    std::optional<Pending> pending_;
+    double wildness_ = 0;  ///< |d omega/dt|^2, slow to fall
     std::size_t window_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "quorient/fdi/axis_health.hpp"
 #include "quorient/fdi/detector.hpp"
 #include "quorient/fdi/readmission.hpp"
 #include "quorient/fdi/settings.hpp"
@@ -15,8 +16,8 @@
 
 namespace quorient::fdi {
 
-/// The brain of the detector process: a method and the state machine behind it. One verdict per accepted frame; nothing is
-/// allocated per frame.
+/// The brain of the detector process: a method, the tests of single axes beside it (AxisHealth: what these find broken the method
+/// does not see), and the state machine behind both. One verdict per accepted frame; nothing is allocated per frame.
 class FaultMonitor {
 public:
     /// @returns why this method cannot serve this cluster, or which setting is wrong.
@@ -53,6 +54,7 @@ private:
 
     std::unique_ptr<Detector> detector_;
     VerdictMachine machine_;
+    std::optional<AxisHealth> health_;
     std::optional<Readmission> readmission_;
     AxisMask all_;
     bool started_ = false;

@@ -1,0 +1,205 @@
+#include "quorient/fdi/accumulating.hpp"
+
+#include "quorient/fdi/fault_monitor.hpp"
+#include "quorient/geometry/layouts.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+
+namespace quorient::fdi {
+namespace {
+
+constexpr double degree = 3.14159265358979323846 / 180;
+constexpr double interval_s = 0.016;
+constexpr double rate_sigma = 0.25 * degree;  // of one axis, as the MIMU4444's
+constexpr double range_rad_s = 2000 * degree;
+
+/// A real array as its recordings show it: noise at rest, and each instrument samples at an instant of its own that wanders.
+class Array {
+public:
+    explicit Array(std::uint64_t seed, const char* layout = "triads-3") : cluster(geometry::layout(layout).value()), random_(seed)
+    {
+        cluster.sigma.setConstant(rate_sigma * interval_s);
+        cluster.quantum.setZero();
+        cluster.range.setConstant(range_rad_s);
+        cluster.interval_s = interval_s;
+    }
+
+    static Eigen::Vector3d rest(double) { return Eigen::Vector3d::Zero(); }
+
+    /// About 500 deg/s and 10 000 deg/s^2.
+    static Eigen::Vector3d violent(double t)
+    {
+        return {8 * std::sin(21 * t), 7 * std::sin(17 * t + 1) + 3 * std::sin(5 * t), 8 * std::cos(19 * t)};
+    }
+
+    template <class Motion>
+    SensorFrame frame(std::uint64_t sequence, Motion motion)
+    {
+        std::normal_distribution<double> normal;
+        SensorFrame made;
+        made.epoch = 1;
+        made.sequence = sequence;
+        made.interval_s = interval_s;
+        made.axis_count = static_cast<std::uint8_t>(cluster.size());
+        made.valid_mask = cluster.all();
+        const double t = static_cast<double>(sequence) * interval_s;
+        Eigen::Vector3d rate = Eigen::Vector3d::Zero();
+        for (std::size_t axis = 0; axis < cluster.size(); ++axis) {
+            if (axis % 3 == 0) rate = motion(t + jitter_s * normal(random_));
+            const double measured = cluster.axes.row(static_cast<Eigen::Index>(axis)).dot(rate) + rate_sigma * normal(random_);
+            made.increment[axis] = measured * interval_s;
+        }
+        return made;
+    }
+
+    static constexpr double jitter_s = 0.1e-3;
+    geometry::SensorCluster cluster;
+
+private:
+    std::mt19937_64 random_;
+};
+
+struct Outcomes {
+    AxisMask isolated = 0;
+    std::uint64_t isolated_at = never;
+    std::uint64_t excluded_from = never;
+};
+
+template <class Motion>
+Outcomes play(std::uint64_t seed, bool instruments, Motion motion, double bias_deg_s, std::size_t axis, std::uint64_t from,
+              std::uint64_t frames)
+{
+    Array array(seed);
+    DetectorSettings settings{.method = "accumulating"};
+    settings.instruments = instruments;
+    auto monitor = FaultMonitor::make(settings, {}, array.cluster).value();
+    Outcomes outcomes;
+    for (std::uint64_t sequence = 0; sequence < frames; ++sequence) {
+        SensorFrame frame = array.frame(sequence, motion);
+        if (sequence >= from) frame.increment[axis] += bias_deg_s * degree * interval_s;
+        const FaultVerdict& verdict = monitor.assess(frame);
+        if (verdict.isolated_mask == 0) continue;
+        outcomes = {.isolated = verdict.isolated_mask, .isolated_at = sequence, .excluded_from = verdict.excluded_from[axis]};
+        break;
+    }
+    return outcomes;
+}
+
+TEST(Accumulating, finds_at_rest_what_no_single_frame_shows_and_names_the_axis)
+{
+    for (std::size_t axis = 0; axis < 9; ++axis) {
+        SCOPED_TRACE("axis " + std::to_string(axis));
+        const Outcomes outcomes = play(100 + axis, false, Array::rest, 0.5, axis, 600, 1200);  // two standard deviations of one frame
+        EXPECT_EQ(outcomes.isolated, axis_bit(axis));
+        EXPECT_GE(outcomes.isolated_at, 600U);
+        EXPECT_LE(outcomes.isolated_at, 600U + 62) << "later than 1 s";
+        EXPECT_LE(outcomes.excluded_from, 600U + 10);
+    }
+}
+
+TEST(Accumulating, finds_a_large_fault_in_three_frames)
+{
+    const Outcomes outcomes = play(7, true, Array::rest, 20, 4, 600, 700);
+    EXPECT_EQ(outcomes.isolated, 0b000111000U);
+    EXPECT_LE(outcomes.isolated_at, 602U);
+    EXPECT_LE(outcomes.excluded_from, 600U);
+}
+
+TEST(Accumulating, finds_a_fault_in_a_violent_motion_and_names_the_instrument)
+{
+    for (std::size_t axis = 0; axis < 9; ++axis) {
+        SCOPED_TRACE("axis " + std::to_string(axis));
+        const Outcomes outcomes = play(200 + axis, true, Array::violent, 10, axis, 600, 1200);
+        EXPECT_EQ(outcomes.isolated, AxisMask{0b111} << (axis / 3 * 3));
+        EXPECT_GE(outcomes.isolated_at, 600U);
+        EXPECT_LE(outcomes.isolated_at, 600U + 94) << "later than 1.5 s";
+    }
+}
+
+TEST(Accumulating, is_silent_without_a_fault_at_rest_and_in_violent_motion)
+{
+    EXPECT_EQ(play(31, true, Array::rest, 0, 0, 0, 40'000).isolated, 0U);
+    EXPECT_EQ(play(32, false, Array::rest, 0, 0, 0, 40'000).isolated, 0U);
+    EXPECT_EQ(play(33, true, Array::violent, 0, 0, 0, 40'000).isolated, 0U);
+    EXPECT_EQ(play(34, false, Array::violent, 0, 0, 0, 40'000).isolated, 0U);
+}
+
+TEST(Accumulating, holds_out_saturated_frames_instead_of_blaming_an_axis)
+{
+    Array array(5);
+    auto detector = Accumulating::make({}, array.cluster).value();
+    Assessment assessment;
+    for (std::uint64_t sequence = 0; sequence < 500; ++sequence) {
+        SensorFrame frame = array.frame(sequence, Array::rest);
+        const bool saturated = sequence >= 200 && sequence < 230;
+        if (saturated) frame.increment[3] = range_rad_s * interval_s;
+        detector->assess({.identity = identity_of(frame),
+                          .interval_s = interval_s,
+                          .increment = std::span(frame.increment).first(9),
+                          .valid = array.cluster.all()},
+                         assessment);
+        EXPECT_EQ(detector->saturated(), sequence >= 200 && sequence <= 230) << "frame " << sequence;
+        EXPECT_NE(assessment.outcome, Outcome::isolated);
+    }
+}
+
+TEST(Accumulating, is_ambiguous_between_two_instruments)
+{
+    Array array(9, "triads-2");
+    DetectorSettings settings;
+    settings.instruments = true;
+    auto detector = Accumulating::make(settings, array.cluster).value();
+    Assessment assessment;
+    for (std::uint64_t sequence = 0; sequence < 300; ++sequence) {
+        SensorFrame frame = array.frame(sequence, Array::rest);
+        if (sequence > 200) frame.increment[0] += 20 * degree * interval_s;
+        detector->assess({.identity = identity_of(frame),
+                          .interval_s = interval_s,
+                          .increment = std::span(frame.increment).first(6),
+                          .valid = array.cluster.all()},
+                         assessment);
+    }
+    EXPECT_EQ(assessment.outcome, Outcome::ambiguous);
+    EXPECT_EQ(assessment.candidate_count, 2);
+}
+
+TEST(Accumulating, says_how_much_is_left_to_detect)
+{
+    auto detector = Accumulating::make({}, Array(1).cluster).value();
+    EXPECT_EQ(detector->detectable_remaining(), 1U);
+    detector->exclude(0b000000111);
+    EXPECT_EQ(detector->detectable_remaining(), 1U);
+    detector->exclude(0b000001111);
+    EXPECT_EQ(detector->detectable_remaining(), 0U) << "one whole instrument has nothing to be compared with";
+}
+
+TEST(Accumulating, refuses_what_it_cannot_serve_and_says_why)
+{
+    const auto refusal = [](const DetectorSettings& settings, const geometry::SensorCluster& cluster) {
+        const auto made = Accumulating::make(settings, cluster);
+        return made ? std::string{} : made.error();
+    };
+    auto cluster = Array(1).cluster;
+    EXPECT_EQ(refusal({}, cluster), "");
+    EXPECT_THAT(refusal({}, Array(1, "cone-6").cluster), ::testing::HasSubstr("all three directions"));
+    cluster.interval_s = 0;
+    EXPECT_THAT(refusal({}, cluster), ::testing::HasSubstr("interval_s"));
+    cluster = Array(1).cluster;
+    cluster.sigma.setZero();
+    EXPECT_THAT(refusal({}, cluster), ::testing::HasSubstr("sigma"));
+    EXPECT_FALSE(Accumulating::make({}, Array(1).cluster, {.jitter_along_s = -1}));
+}
+
+TEST(Accumulating, states_its_false_alarms_per_hour)
+{
+    EXPECT_DOUBLE_EQ(Accumulating::make({}, Array(1).cluster).value()->false_alarms_per_hour(), 0.1);
+    EXPECT_DOUBLE_EQ(Accumulating::make({.pfa = 1e-6}, Array(1).cluster).value()->false_alarms_per_hour(), 1e-6 * 3600 / interval_s);
+}
+
+}  // namespace
+}  // namespace quorient::fdi

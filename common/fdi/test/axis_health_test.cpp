@@ -1,0 +1,158 @@
+#include "quorient/fdi/axis_health.hpp"
+
+#include "quorient/fdi/fault_monitor.hpp"
+#include "quorient/geometry/layouts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace quorient::fdi {
+namespace {
+
+constexpr double interval_s = 0.01;
+constexpr double sigma_rad = 2e-5;
+constexpr double quantum_rad = 2e-5;
+constexpr double range_rad_s = 10;
+
+/// Six noisy, quantised axes; a test spoils axis 2.
+class AxisHealthTest : public ::testing::Test {
+protected:
+    AxisHealthTest()
+    {
+        cluster_.sigma.setConstant(sigma_rad);
+        cluster_.quantum.setConstant(quantum_rad);
+        cluster_.range.setConstant(range_rad_s);
+        cluster_.interval_s = interval_s;
+        health_.emplace(cluster_);
+    }
+
+    static Eigen::Vector3d rest(unsigned) { return Eigen::Vector3d::Zero(); }
+    static Eigen::Vector3d wild(unsigned frame)
+    {
+        const double t = frame * interval_s;
+        return {3 * std::sin(20 * t), 4 * std::cos(17 * t), 3 * std::sin(23 * t + 1)};
+    }
+
+    /// @param spoil  what axis 2 says instead of the value given; NaN for nothing.
+    template <class Motion, class Spoil>
+    AxisMask feed(unsigned frames, Motion motion, Spoil spoil)
+    {
+        AxisMask broken = 0;
+        for (unsigned i = 0; i < frames; ++i, ++frame_) {
+            const geometry::AxisVector exact = cluster_.axes * motion(frame_) * interval_s;
+            for (std::size_t axis = 0; axis < 6; ++axis)
+                z_[axis] = std::round((exact(static_cast<Eigen::Index>(axis)) + noise_(random_)) / quantum_rad) * quantum_rad;
+            z_[2] = spoil(z_[2]);
+            broken |= health_->assess({.identity = {1, frame_}, .interval_s = interval_s, .increment = z_, .valid = 0b111111});
+        }
+        return broken;
+    }
+
+    static double sound(double value) { return value; }
+
+    geometry::SensorCluster cluster_ = geometry::layout("cone-6").value();
+    std::optional<AxisHealth> health_;
+    std::vector<double> z_ = std::vector<double>(6);
+    unsigned frame_ = 0;
+    std::mt19937_64 random_{12};
+    std::normal_distribution<double> noise_{0, sigma_rad};
+};
+
+TEST_F(AxisHealthTest, finds_nothing_wrong_with_sound_axes_at_rest_and_in_motion)
+{
+    EXPECT_EQ(feed(200'000, rest, sound), 0U) << "at rest a quantised axis repeats itself many times";
+    EXPECT_EQ(feed(50'000, wild, sound), 0U);
+}
+
+TEST_F(AxisHealthTest, finds_a_frozen_axis_at_the_second_repeat_while_the_others_move)
+{
+    feed(500, wild, sound);
+    const double stuck = z_[2];
+    EXPECT_EQ(feed(1, wild, [&](double) { return stuck; }), 0U) << "a single repeat is normal";
+    EXPECT_EQ(feed(1, wild, [&](double) { return stuck; }), 0b100U);
+    EXPECT_EQ(health_->fault(2), AxisFault::frozen);
+}
+
+TEST_F(AxisHealthTest, forgives_single_repeats_in_motion)
+{
+    double last = 0;
+    bool repeat = false;
+    const auto every_other = [&](double value) { return (repeat = !repeat) ? last = value : last; };
+    EXPECT_EQ(feed(5000, wild, every_other), 0U);
+}
+
+TEST_F(AxisHealthTest, finds_a_frozen_axis_at_rest_by_what_its_noise_never_does)
+{
+    feed(2000, rest, sound);
+    const double stuck = z_[2];
+    EXPECT_EQ(feed(4, rest, [&](double) { return stuck; }), 0U);
+    EXPECT_EQ(feed(60, rest, [&](double) { return stuck; }), 0b100U);
+}
+
+TEST_F(AxisHealthTest, tells_an_all_zero_axis)
+{
+    feed(500, wild, sound);
+    EXPECT_EQ(feed(5, wild, [](double) { return 0.0; }), 0b100U);
+    EXPECT_EQ(health_->fault(2), AxisFault::zero);
+}
+
+TEST_F(AxisHealthTest, tells_an_absent_axis_but_not_a_few_lost_samples)
+{
+    EXPECT_EQ(feed(7, wild, [](double) { return std::nan(""); }), 0U);
+    feed(40, wild, sound);
+    EXPECT_EQ(feed(8, wild, [](double) { return std::nan(""); }), 0b100U);
+    EXPECT_EQ(health_->fault(2), AxisFault::absent);
+}
+
+TEST_F(AxisHealthTest, tells_a_value_beyond_the_range)
+{
+    EXPECT_EQ(feed(1, wild, [](double) { return 1.1 * range_rad_s * interval_s; }), 0b100U);
+    EXPECT_EQ(health_->fault(2), AxisFault::out_of_range);
+}
+
+TEST_F(AxisHealthTest, tells_an_axis_at_its_rail_from_a_body_that_turns_that_fast)
+{
+    feed(10, wild, sound);
+    EXPECT_EQ(feed(1, wild, [](double) { return range_rad_s * interval_s; }), 0b100U);
+    EXPECT_EQ(health_->fault(2), AxisFault::rail);
+
+    const Eigen::Vector3d along = cluster_.axes.row(2);
+    EXPECT_EQ(feed(
+                  50, [&](unsigned) { return Eigen::Vector3d(0.99 * range_rad_s * along); }, sound),
+              0U);
+}
+
+TEST_F(AxisHealthTest, does_not_ask_for_noise_where_the_quantum_hides_it)
+{
+    cluster_.sigma.setConstant(quantum_rad / 10);
+    health_.emplace(cluster_);
+    EXPECT_EQ(feed(5000, wild, [](double) { return 0.0; }), 0U);
+}
+
+TEST_F(AxisHealthTest, what_is_broken_is_isolated_by_the_monitor_without_any_parity)
+{
+    auto monitor = FaultMonitor::make({.method = "glt"}, {}, cluster_).value();
+    std::uint64_t isolated_at = never;
+    AxisMask isolated = 0;
+    for (unsigned frame = 0; frame < 600; ++frame) {
+        SensorFrame message;
+        message.epoch = 1;
+        message.sequence = frame;
+        message.interval_s = interval_s;
+        message.axis_count = 6;
+        message.valid_mask = frame < 300 ? 0b111111 : 0b111011;
+        const geometry::AxisVector z = cluster_.axes * wild(frame) * interval_s;
+        for (std::size_t axis = 0; axis < 6; ++axis) message.increment[axis] = z(static_cast<Eigen::Index>(axis)) + noise_(random_);
+        isolated = monitor.assess(message).isolated_mask;
+        if (isolated != 0) isolated_at = std::min<std::uint64_t>(isolated_at, frame);
+    }
+    EXPECT_EQ(isolated, 0b100U);
+    EXPECT_GE(isolated_at, 300U);
+    EXPECT_LE(isolated_at, 310U);
+}
+
+}  // namespace
+}  // namespace quorient::fdi
