@@ -1,20 +1,53 @@
 #include "quorient/calibration/axes_fit.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace quorient::calibration {
 namespace {
 
 using geometry::AxisMatrix;
+using geometry::AxisVector;
 
-constexpr double least_motion = 30.0;  // rms rate about the least turned body axis, in standard deviations of one sample at rest
+constexpr double least_contrast = 5.0;    // between the weakest motion and the strongest disagreement, both as rms rates
+constexpr double nominal_enough = 0.175;  // [rad] 10 deg: no assembly error is larger, no deliberate mounting smaller
+
+/// Which rows of H belong to each instrument.
+std::vector<std::vector<Eigen::Index>> rows_of_instruments(const std::vector<std::size_t>& instrument)
+{
+    std::vector<std::vector<Eigen::Index>> rows(*std::max_element(instrument.begin(), instrument.end()) + 1);
+    for (std::size_t axis = 0; axis < instrument.size(); ++axis) rows[instrument[axis]].push_back(static_cast<Eigen::Index>(axis));
+    return rows;
+}
+
+/// Body rates as one instrument alone sees them, a row per sample; nothing if its axes do not span the space.
+std::optional<Eigen::MatrixX3d> rates_of(const std::vector<AxisVector>& rates, const geometry::Axes& nominal,
+                                         const std::vector<Eigen::Index>& rows)
+{
+    const Eigen::MatrixX3d axes = nominal(rows, Eigen::all);
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixX3d> solver(axes);
+    if (solver.rank() < 3) return std::nullopt;
+    Eigen::MatrixX3d body(static_cast<Eigen::Index>(rates.size()), 3);
+    for (std::size_t i = 0; i < rates.size(); ++i) body.row(static_cast<Eigen::Index>(i)) = solver.solve(Eigen::VectorXd(rates[i](rows)));
+    return body;
+}
+
+/// The rotation that takes the rows of `own` closest to those of `reference`.
+Eigen::Matrix3d closest_rotation(const Eigen::MatrixX3d& own, const Eigen::MatrixX3d& reference)
+{
+    const Eigen::Matrix3d profile = reference.transpose() * own;
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(profile, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Matrix3d u = svd.matrixU();
+    if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;  // the nearest rotation, not the nearest reflection
+    return u * svd.matrixV().transpose();
+}
 
 }  // namespace
 
-tl::expected<AxesFit, std::string> fit_axes(const std::vector<geometry::AxisVector>& unbiased_rates, const geometry::Axes& nominal,
-                                            double noise_rad_s)
+tl::expected<AxesFit, std::string> fit_axes(const std::vector<AxisVector>& unbiased_rates, const geometry::Axes& nominal)
 {
     const Eigen::Index n = nominal.rows();
     if (n < 4) return tl::unexpected(fmt::format("{} axes have no redundancy to compare each other by", n));
@@ -24,23 +57,39 @@ tl::expected<AxesFit, std::string> fit_axes(const std::vector<geometry::AxisVect
     for (const auto& rate : unbiased_rates) moment += rate * rate.transpose();
     moment /= static_cast<double>(unbiased_rates.size());
     const Eigen::SelfAdjointEigenSolver<AxisMatrix> solver(moment);  // eigenvalues ascend
-    // Of a cluster with H'H = (n/3) I, a body rate of variance s^2 about each axis has the eigenvalue n s^2 / 3.
-    const double weakest_rad_s = std::sqrt(std::max(0.0, solver.eigenvalues()(n - 3)) * 3.0 / static_cast<double>(n));
-    if (!(weakest_rad_s > least_motion * noise_rad_s))
-        return tl::unexpected(fmt::format("the motion turned about one body axis with {:.4f} rad/s rms only; {:.4f} are needed",
-                                          weakest_rad_s, least_motion * noise_rad_s));
+    const double weakest_motion = std::sqrt(std::max(0.0, solver.eigenvalues()(n - 3)));
+    const double disagreement = std::sqrt(std::max(0.0, solver.eigenvalues()(n - 4)));
+    if (!(weakest_motion > least_contrast * disagreement))
+        return tl::unexpected(
+            fmt::format("the motion about one body axis is {:.4f} rad/s rms only, the axes disagree by {:.4f}; {} times that is needed",
+                        weakest_motion, disagreement, least_contrast));
 
     const geometry::Axes basis = solver.eigenvectors().rightCols<3>();
-    geometry::Axes fitted = basis * (basis.transpose() * nominal);
+    const geometry::Axes fitted = basis * (basis.transpose() * nominal);
     AxesFit fit;
     fit.samples = unbiased_rates.size();
-    fit.gain = fitted.rowwise().norm();
-    const double common = fit.gain.mean();
-    fit.axes = fitted.array().colwise() / fit.gain.array();
-    fit.gain /= common;
+    const Eigen::VectorXd length = fitted.rowwise().norm();
+    fit.axes = fitted.array().colwise() / length.array();
+    fit.gain = length / length.mean();
     // What the three directions do not hold is the disagreement.
     fit.residual_rad_s = std::sqrt(std::max(0.0, solver.eigenvalues().head(n - 3).sum()) / static_cast<double>(n - 3));
     return fit;
+}
+
+geometry::Axes mounted(const std::vector<AxisVector>& unbiased_rates, const geometry::Axes& nominal,
+                       const std::vector<std::size_t>& instrument)
+{
+    geometry::Axes axes = nominal;
+    const auto rows = rows_of_instruments(instrument);
+    const auto first = rates_of(unbiased_rates, nominal, rows.front());
+    for (std::size_t i = 1; i < rows.size() && first; ++i) {
+        const auto own = rates_of(unbiased_rates, nominal, rows[i]);
+        if (!own) continue;
+        const Eigen::Matrix3d to_first = closest_rotation(*own, *first);
+        if (Eigen::AngleAxisd(to_first).angle() < nominal_enough) continue;
+        for (const Eigen::Index row : rows[i]) axes.row(row) = nominal.row(row) * to_first.transpose();
+    }
+    return axes;
 }
 
 }  // namespace quorient::calibration

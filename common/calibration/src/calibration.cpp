@@ -4,7 +4,7 @@
 #include "quorient/geometry/sensor_cluster.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/Geometry>
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -16,6 +16,7 @@ using geometry::AxisVector;
 constexpr std::size_t fewest_at_limit = 5;     // times that one extreme value comes before it is called a limit
 constexpr double limit_deviations = 50.0;      // noise alone never repeats an extreme this far out
 constexpr double near_limit = 0.975;           // of the limit: from here a MEMS gyro is not linear any more (1950 of 2000 deg/s)
+constexpr double vibration_window_s = 0.25;    // long against the vibration of rotors, short against a manoeuvre
 constexpr std::size_t frames_after_limit = 3;  // that its filter still remembers the clipping
 
 std::size_t index(Eigen::Index axis)
@@ -83,26 +84,78 @@ std::vector<bool> usable_samples(Samples samples, const Limits& limits, const Cl
     return usable;
 }
 
-tl::expected<void, std::string> note_rest(Samples samples, Calibration& result, const RestSettings& settings)
+std::string constant_axis(Samples samples)
 {
-    result.rest = resting_segments(samples, settings);
-    if (result.rest.empty())
-        return tl::unexpected(
-            fmt::format("no resting segment of {} s in the log: biases and noise cannot be told from motion (at rest means a standard "
-                        "deviation below {} rad/s and a mean near the other segments')",
-                        settings.shortest_s, settings.deviation_rad_s));
-    result.at_rest = rest_figures(samples, result.rest);
-    result.allan = allan_deviation(samples, result.rest);
-    result.allan_figures = allan_figures(result.allan);
-    const AxisVector first = samples[result.rest.front().begin].rate;
+    if (samples.empty()) return "the log has no frame";
+    const AxisVector& first = samples.front().rate;
     for (Eigen::Index axis = 0; axis < first.size(); ++axis) {
         const auto changes = [&](const Sample& sample) {
             return std::abs(sample.rate(axis) - first(axis)) > 1e-12 * std::abs(first(axis));
         };
         if (std::none_of(samples.begin(), samples.end(), changes))
-            return tl::unexpected(fmt::format("axis {} is constant over the whole log: it is dead, or the log is", axis));
+            return fmt::format("axis {} is constant over the whole log: it is dead, or the log is", axis);
     }
     return {};
+}
+
+void note_rest(Samples samples, Calibration& result)
+{
+    result.at_rest = rest_figures(samples, result.rest);
+    result.allan = allan_deviation(samples, result.rest);
+    result.allan_figures = allan_figures(result.allan);
+}
+
+/// Without rest: the mean of all samples, to begin with.
+RestFigures mean_of_all(Samples samples)
+{
+    const Eigen::Index n = samples.front().rate.size();
+    RestFigures figures{AxisVector::Zero(n), AxisVector::Zero(n), AxisVector::Zero(n)};
+    double count = 0;
+    for (const Sample& sample : samples) {
+        if (!sample.complete) continue;
+        figures.bias_rad_s += sample.rate;
+        ++count;
+    }
+    figures.bias_rad_s /= std::max(1.0, count);
+    return figures;
+}
+
+/// Without rest: of the means, what no rotation explains; and the deviation of what no rotation explains.
+void keep_disagreement(const AxesFit& fit, const std::vector<AxisVector>& rates, const std::vector<bool>& usable, RestFigures& figures)
+{
+    const geometry::Axes h = fit.axes.array().colwise() * fit.gain.array();
+    const Eigen::MatrixXd residual = Eigen::MatrixXd::Identity(h.rows(), h.rows()) - h * (h.transpose() * h).inverse() * h.transpose();
+    figures.bias_rad_s = AxisVector(residual * figures.bias_rad_s);
+    double count = 0;
+    for (std::size_t i = 0; i < rates.size(); ++i) {
+        if (!usable[i]) continue;
+        figures.deviation_rad_s += AxisVector(residual * rates[i]).cwiseAbs2();
+        ++count;
+    }
+    const AxisVector share = residual.diagonal();
+    figures.deviation_rad_s = (figures.deviation_rad_s.array() / share.array() / std::max(1.0, count)).sqrt();
+}
+
+/// Means over blocks of usable samples in a row: manoeuvres stay, vibration (which each sensor samples at its own time) goes.
+std::vector<AxisVector> block_means(Samples samples, const std::vector<AxisVector>& unbiased, const std::vector<bool>& usable)
+{
+    const auto length = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(vibration_window_s / samples.front().interval_s)));
+    std::vector<AxisVector> means;
+    AxisVector sum = AxisVector::Zero(unbiased.front().size());
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (count > 0 && !samples[i].follows) count = 0;
+        if (!usable[i]) {
+            count = 0;
+            continue;
+        }
+        if (count == 0) sum = unbiased[i];
+        else sum += unbiased[i];
+        if (++count < length) continue;
+        means.emplace_back(sum / static_cast<double>(length));
+        count = 0;
+    }
+    return means;
 }
 
 /// Rates without bias of the samples that move and are usable.
@@ -153,8 +206,12 @@ tl::expected<Calibration, std::string> calibrate(Samples samples, const ClusterD
 {
     const auto cluster = geometry::make_cluster(nominal);
     if (!cluster) return tl::unexpected(cluster.error());
+    if (auto constant = constant_axis(samples); !constant.empty()) return tl::unexpected(std::move(constant));
     Calibration result;
-    if (const auto rested = note_rest(samples, result, settings); !rested) return tl::unexpected(rested.error());
+    result.rest = resting_segments(samples, settings);
+    const bool rested = !result.rest.empty();
+    if (rested) note_rest(samples, result);
+    else result.at_rest = mean_of_all(samples);
 
     const Limits limits = saturation_limits(samples, result.at_rest);
     const auto usable = usable_samples(samples, limits, nominal, result);
@@ -165,10 +222,18 @@ tl::expected<Calibration, std::string> calibrate(Samples samples, const ClusterD
     result.cluster.description = nominal;
     result.cluster.gain.fill(1.0);
     const double noise_rad_s = std::sqrt(result.at_rest.deviation_rad_s.squaredNorm() / static_cast<double>(cluster->size()));
-    const auto fit = fit_axes(moving_rates(rates, usable, noise_rad_s), cluster->axes, noise_rad_s);
+    const auto moving = rested ? moving_rates(rates, usable, noise_rad_s) : block_means(samples, rates, usable);
+    const geometry::Axes axes = moving.empty() ? cluster->axes : mounted(moving, cluster->axes, cluster->instrument);
+    const auto fit = fit_axes(moving, axes);
+    if (!fit && !rested)
+        return tl::unexpected(
+            fmt::format("no resting segment of {} s (standard deviation below {} rad/s), and without one the axes must show the "
+                        "biases by their disagreement: {}",
+                        settings.shortest_s, settings.deviation_rad_s, fit.error()));
     if (fit) {
-        take_axes(*fit, cluster->axes, result);
-        for (AxisVector& rate : rates) rate = rate.cwiseQuotient(fit->gain);
+        if (!rested) keep_disagreement(*fit, rates, usable, result.at_rest);
+        take_axes(*fit, axes, result);
+        for (AxisVector& rate : rates) rate = rate.cwiseQuotient(fit->gain).eval();
         result.motion = motion_figures(samples, rates, usable, fit->axes, result.at_rest.deviation_rad_s.cwiseQuotient(fit->gain));
         result.cluster.jitter_along_s = result.motion->noise.along_s;
         result.cluster.jitter_across_s = result.motion->noise.across_s;

@@ -106,11 +106,28 @@ TEST_F(CalibrateVerb, writes_the_cluster_file_and_the_plot)
     EXPECT_THAT(content(path("c.svg")), AllOf(testing::StartsWith("<svg"), HasSubstr("Allan deviation"), testing::EndsWith("</svg>\n")));
 }
 
+TEST_F(CalibrateVerb, finds_four_sensors_of_one_flight_in_agreement)
+{
+    const auto folder = data_dir() / "ansfl_quadrotor_4xDOT" / "Horizontal" / "path_11";
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no recordings under " << data_dir();
+    std::string arguments = "calibrate --json";
+    for (int imu = 1; imu <= 4; ++imu) arguments += " " + (folder / ("IMU_" + std::to_string(imu) + ".csv")).string();
+    const Output output = run(arguments);
+    ASSERT_EQ(output.exit_code, 0) << output.error;
+    EXPECT_THAT(output.error, AllOf(HasSubstr("IMU_4.csv: its clock shows"), HasSubstr("IMU_2.csv:4685:")));
+    const json calibration = json::parse(output.out);
+    EXPECT_EQ(calibration["rest"].size(), 0U);
+    for (const auto& axis : calibration["axes"]) {
+        EXPECT_NEAR(axis["gain"].get<double>(), 1.0, 0.03);
+        EXPECT_LT(std::abs(axis["bias_rad_s"].get<double>()), 3 * degree);
+    }
+}
+
 TEST_F(CalibrateVerb, explains_what_it_cannot_calibrate)
 {
-    const Output moving = run("simulate random --layout triads-3 --interval 0.01 --duration 30 --noise-rad 1e-5");
+    const Output moving = run("simulate random --layout orthogonal-3 --interval 0.01 --duration 30 --noise-rad 1e-5");
     std::ofstream(path("moving.csv")) << moving.out;
-    EXPECT_THAT(run("calibrate " + path("moving.csv") + " --layout triads-3").error, HasSubstr("no resting segment"));
+    EXPECT_THAT(run("calibrate " + path("moving.csv") + " --layout orthogonal-3").error, HasSubstr("no resting segment"));
     EXPECT_THAT(run("calibrate " + path("moving.csv")).error, HasSubstr("--layout"));
     EXPECT_THAT(run("calibrate " + path("moving.csv") + " --layout cone-4").error, HasSubstr("4 axes"));
     EXPECT_THAT(run("calibrate " + path("none.csv")).error, HasSubstr("none.csv"));

@@ -2,7 +2,7 @@
 #include "cluster_input.hpp"
 #include "failure.hpp"
 #include "json_output.hpp"
-#include "quorient/recording/reader.hpp"
+#include "quorient/recording/merge.hpp"
 #include "verbs.hpp"
 
 #include <fmt/format.h>
@@ -10,13 +10,14 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <vector>
 
 namespace quorient::cli {
 
 namespace {
 
 struct CalibrateOptions {
-    std::string log;
+    std::vector<std::string> logs;
     ClusterChoice choice;
     std::string out;
     std::string plot;
@@ -53,13 +54,13 @@ ClusterDescription nominal_cluster(const CalibrateOptions& options, const record
     if (options.choice.name().empty()) {
         const bool known =
             std::any_of(nominal.axis.begin(), nominal.axis.end(), [](const auto& axis) { return axis != std::array<double, 3>{}; });
-        if (!known) fail(fmt::format("{} does not say where its axes point: name --layout or --axes", options.log));
+        if (!known) fail(fmt::format("{} does not say where its axes point: name --layout or --axes", options.logs.front()));
         return nominal;
     }
     const auto cluster = load_cluster(options.choice);
     if (!cluster) fail(cluster.error());
     if (cluster->size() != nominal.axis_count)
-        fail(fmt::format("{} has {} axes, {} has {}", options.choice.name(), cluster->size(), options.log, nominal.axis_count));
+        fail(fmt::format("{} has {} axes, {} has {}", options.choice.name(), cluster->size(), options.logs.front(), nominal.axis_count));
     nominal.instrument_count = static_cast<std::uint8_t>(cluster->instrument_name.size());
     for (std::size_t axis = 0; axis < cluster->size(); ++axis) {
         Eigen::Vector3d::Map(nominal.axis[axis].data()) = cluster->axes.row(static_cast<Eigen::Index>(axis));
@@ -75,15 +76,20 @@ ClusterDescription nominal_cluster(const CalibrateOptions& options, const record
 
 void run(const CalibrateOptions& options)
 {
-    auto reader = recording::open_log(options.log);
-    if (!reader) fail(reader.error());
-    const ClusterDescription nominal = nominal_cluster(options, **reader);
-    const auto samples = read_samples(**reader);
+    const std::vector<std::filesystem::path> files(options.logs.begin(), options.logs.end());
+    const auto merged = recording::open_logs(files);
+    if (!merged) fail(merged.error());
+    for (std::size_t i = 1; i < files.size(); ++i)
+        fmt::print(stderr, "{}: its clock shows {:+.4f} s against {} (correlation {:.3f})\n", options.logs[i], merged->offsets[i].offset_s,
+                   options.logs.front(), merged->offsets[i].correlation);
+    recording::Reader& reader = *merged->reader;
+    const ClusterDescription nominal = nominal_cluster(options, reader);
+    const auto samples = read_samples(reader);
     auto calibration = calibration::calibrate(samples, nominal, options.rest);
-    if (!calibration) fail(fmt::format("{}: {}", options.log, calibration.error()));
-    calibration->cluster.origin = std::filesystem::path(options.log).filename().string();
+    if (!calibration) fail(fmt::format("{}: {}", options.logs.front(), calibration.error()));
+    calibration->cluster.origin = files.front().filename().string();
 
-    const auto& statistics = (*reader)->statistics();
+    const auto& statistics = reader.statistics();
     if (options.json) fmt::print("{}\n", dump(calibration_json(*calibration, samples, statistics)));
     else fmt::print("{}", calibration_text(*calibration, samples, statistics));
     if (!options.out.empty()) {
@@ -100,14 +106,15 @@ void add_calibrate(CLI::App& program)
 {
     auto* verb = program.add_subcommand("calibrate", "What a recording tells of its gyros: bias, noise, axes, motion noise, limits.");
     verb->footer(
-        "The log must hold resting segments (biases, noise, Allan deviation); with motion about all three axes and more than three axes it "
-        "also gives\n"
-        "directions and gains. --out writes the cluster file that a publisher reads.\n\n"
+        "From resting segments: biases, noise, Allan deviation; from motion about all three axes, with more than three axes:\n"
+        "directions and gains. Without rest, biases and noise are those in which the axes disagree. --out writes the cluster file\n"
+        "that a publisher reads.\n\n"
         "Example:\n"
         "  quorient calibrate exp_1/data.bin --out cluster.yaml --plot calibration.svg\n");
     const auto options = std::make_shared<CalibrateOptions>();
-    verb->add_option("log", options->log, "MIMU4444 binary, Xsens DOT CSV, or CSV as quorient simulate writes it")
-        ->option_text("LOG")
+    verb->add_option("log", options->logs,
+                     "MIMU4444 binary, Xsens DOT CSV, or CSV as quorient simulate writes it; several of one motion are merged")
+        ->option_text("LOG ...")
         ->required();
     add_cluster_options(*verb, options->choice);
     verb->add_option("--out", options->out, "cluster file to write (YAML)");

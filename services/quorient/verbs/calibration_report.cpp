@@ -24,6 +24,7 @@ std::string axis_name(const Calibration& calibration, std::size_t axis)
 Json axis_json(const Calibration& calibration, std::size_t axis)
 {
     const auto& cluster = calibration.cluster;
+    const bool rested = !calibration.rest.empty();
     const auto row = static_cast<Eigen::Index>(axis);
     return {{"axis", axis},
             {"instrument", axis_name(calibration, axis)},
@@ -33,8 +34,8 @@ Json axis_json(const Calibration& calibration, std::size_t axis)
             {"gain", cluster.gain[axis]},
             {"direction", cluster.description.axis[axis]},
             {"misalignment_rad", calibration.misalignment_rad[axis]},
-            {"random_walk_rad_sqrt_s", calibration.allan_figures.random_walk_rad_sqrt_s(row)},
-            {"bias_instability_rad_s", calibration.allan_figures.bias_instability_rad_s(row)},
+            {"random_walk_rad_sqrt_s", rested ? Json(calibration.allan_figures.random_walk_rad_sqrt_s(row)) : Json()},
+            {"bias_instability_rad_s", rested ? Json(calibration.allan_figures.bias_instability_rad_s(row)) : Json()},
             {"limit_rad_s", calibration.saturation_limit_rad_s[axis] > 0 ? Json(calibration.saturation_limit_rad_s[axis]) : Json()},
             {"saturated", calibration.saturated[axis]}};
 }
@@ -93,15 +94,16 @@ std::string calibration_text(const Calibration& calibration, Samples samples, co
     text +=
         "axis instrument  bias deg/s  spread   sigma deg/s  gain-1 %  off nominal deg  walk deg/sqrt(h)  instability deg/h  limit deg/s  "
         "saturated\n";
+    const bool rested = !calibration.rest.empty();
     for (std::size_t axis = 0; axis < calibration.cluster.description.axis_count; ++axis) {
         const auto row = static_cast<Eigen::Index>(axis);
         const double limit = calibration.saturation_limit_rad_s[axis];
-        text += fmt::format("{:>4} {:<10} {:>11.3f} {:>7.3f} {:>13.3f} {:>9.2f} {:>16.2f} {:>17.2f} {:>18.1f} {:>12} {:>10}\n", axis,
+        text += fmt::format("{:>4} {:<10} {:>11.3f} {:>7.3f} {:>13.3f} {:>9.2f} {:>16.2f} {:>17} {:>18} {:>12} {:>10}\n", axis,
                             axis_name(calibration, axis), calibration.at_rest.bias_rad_s(row) / degree,
                             calibration.at_rest.bias_spread_rad_s(row) / degree, calibration.at_rest.deviation_rad_s(row) / degree,
                             100 * (calibration.cluster.gain[axis] - 1), calibration.misalignment_rad[axis] / degree,
-                            calibration.allan_figures.random_walk_rad_sqrt_s(row) / degree * 60,
-                            calibration.allan_figures.bias_instability_rad_s(row) / degree * 3600,
+                            rested ? fmt::format("{:.2f}", calibration.allan_figures.random_walk_rad_sqrt_s(row) / degree * 60) : "-",
+                            rested ? fmt::format("{:.1f}", calibration.allan_figures.bias_instability_rad_s(row) / degree * 3600) : "-",
                             limit > 0 ? fmt::format("{:.2f}", limit / degree) : "-", calibration.saturated[axis]);
     }
     if (!calibration.motion) return text + fmt::format("\nnominal axes are kept: {}\n", calibration.axes_note);

@@ -20,7 +20,12 @@ struct AxesFit {
 /// moment), turned, scaled and sheared to lie closest to the nominal axes. What the nominal axes have in common (a rotation of the
 /// whole cluster, a common scale) is therefore kept from them.
 /// @returns an error if the cluster has no redundancy, or the motion did not turn about all three body axes.
-tl::expected<AxesFit, std::string> fit_axes(const std::vector<geometry::AxisVector>& unbiased_rates, const geometry::Axes& nominal,
-                                            double noise_rad_s);
+tl::expected<AxesFit, std::string> fit_axes(const std::vector<geometry::AxisVector>& unbiased_rates, const geometry::Axes& nominal);
+
+/// Nominal axes with every instrument of three or more axes turned to agree best with the first one (Wahba's problem by singular values
+/// [Markley 1988]); instruments that are already within 10 deg stay as they are. For logs whose instruments each have a frame of their own.
+/// Needs motion about at least two body axes: without, the turn about the one is arbitrary.
+geometry::Axes mounted(const std::vector<geometry::AxisVector>& unbiased_rates, const geometry::Axes& nominal,
+                       const std::vector<std::size_t>& instrument);
 
 }  // namespace quorient::calibration

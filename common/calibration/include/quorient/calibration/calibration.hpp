@@ -16,10 +16,10 @@ namespace quorient::calibration {
 /// Everything that a recording tells of its sensors.
 struct Calibration {
     CalibratedCluster cluster;  ///< what a publisher needs
-    std::vector<Segment> rest;
+    std::vector<Segment> rest;  ///< empty: they never rested, see calibrate
     RestFigures at_rest;
     std::vector<AllanPoint> allan;
-    AllanFigures allan_figures;
+    AllanFigures allan_figures;           ///< empty vectors without rest
     std::optional<MotionFigures> motion;  ///< absent where the axes could not be fitted
     std::string axes_note;                ///< why the nominal axes were kept, or empty
     double axes_residual_rad_s = 0;
@@ -28,8 +28,11 @@ struct Calibration {
     std::array<double, max_axes> saturation_limit_rad_s{};  ///< the extreme value that came again and again; 0 = never reached
 };
 
+/// Where the sensors never rested, the axes' disagreement takes the place of rest: the biases are those that the axes do not have in
+/// common (the common part cannot be told from motion and stays 0), sigma is the disagreement over all the log's motion.
+///
 /// @param nominal  axes, instruments, names, range, quantum and interval of the log.
-/// @returns an error if the sensors never rested, or an axis is constant, NaN or of unknown direction.
+/// @returns an error if the sensors never rested and have no redundancy either, or an axis is constant or of unknown direction.
 tl::expected<Calibration, std::string> calibrate(Samples samples, const ClusterDescription& nominal, const RestSettings& settings = {});
 
 }  // namespace quorient::calibration

@@ -9,7 +9,7 @@ namespace quorient::calibration {
 struct RestSettings {
     double window_s = 1.0;          ///< what is judged at once
     double shortest_s = 4.0;        ///< of a segment, before its ends are cut by half a window each
-    double deviation_rad_s = 0.05;  ///< above it nothing rests, however quiet it is relative to the rest of the log
+    double deviation_rad_s = 0.02;  ///< above it nothing rests, however quiet it is relative to the rest of the log
     double quiet_factor = 3.0;      ///< a window rests if its variance is below this multiple of the quietest tenth's
     double mean_rad_s = 0.02;  ///< farthest that a window's mean may lie from the median of the quiet windows' (a slow turn is no rest)
 };
