@@ -45,10 +45,7 @@ AttitudeIntegrator::AttitudeIntegrator(const system::IntegratorProcess& settings
     node_.main_output([this] { return attitudes_.status(); });
     node_.watch(
         bus::topics::attitude.spec.name, [this] { return attitudes_.status(); }, true);
-    loop.on(bus.subscribe(bus::topics::cluster), [this](const ClusterDescription& description) {
-        intake_.describe(description);
-        handle_accepted();
-    });
+    loop.on(bus.subscribe(bus::topics::cluster), [this](const ClusterDescription& description) { on_description(description); });
     loop.on(bus.subscribe(bus::topics::voter_output), [this](const VotedAttitude& voted) { on_voted(voted); });
     loop.on(bus.subscribe(bus::topics::command), [this](const FaultCommand& command) { on_command(command); });
     verdicts_ = &loop.on(bus.subscribe(bus::topics::verdict), [this](const FaultVerdict& verdict) { on_verdict(verdict); });
@@ -66,6 +63,16 @@ void AttitudeIntegrator::look_at_readiness()
     if (node_.state() == ServiceState::starting && intake_.described() && frames_->status().matched > 0 &&
         verdicts_->status().matched > 0 && attitudes_.status().matched > 0)
         node_.set_state(ServiceState::ready);
+}
+
+/// Of an epoch to come only an attitude measured at its start counts: what the configuration states was true once.
+void AttitudeIntegrator::on_description(const ClusterDescription& description)
+{
+    intake_.describe(description);
+    const bool measured = description.initial_attitude_known == static_cast<std::uint8_t>(InitialAttitude::measured);
+    if (integrator_ && measured && description.unit == settings_.process.node.unit && description.epoch > last_.epoch)
+        integrator_->begin_epoch(description.epoch, description.initial_attitude);
+    handle_accepted();
 }
 
 void AttitudeIntegrator::on_frame(const SensorFrame& frame)
@@ -91,7 +98,8 @@ bool AttitudeIntegrator::prepare(const ClusterDescription& description, std::uin
 {
     auto integration = settings_.integration;
     integration.initialised = first_sequence == 0 && !voted_;
-    if (description.initial_attitude_known) integration.initial_attitude = description.initial_attitude;
+    if (description.initial_attitude_known != static_cast<std::uint8_t>(InitialAttitude::unknown))
+        integration.initial_attitude = description.initial_attitude;
     auto cluster = geometry::make_cluster(description);
     auto made = cluster ? attitude::Integrator::make(integration, *cluster)
                         : tl::expected<attitude::Integrator, std::string>{tl::make_unexpected(cluster.error())};
@@ -181,6 +189,21 @@ void AttitudeIntegrator::on_voted(const VotedAttitude& voted)
     else if (absent_until_ && identity_of(voted) >= *absent_until_) rejoin(voted);
 }
 
+/// @returns why not; empty if done.
+std::string AttitudeIntegrator::reset_attitude(const FaultCommand& command)
+{
+    double norm = 0;
+    for (const double component : command.attitude) norm += component * component;
+    if (!(std::abs(norm - 1) < 1e-6)) return "cannot reset: not a unit quaternion";
+    if (!integrator_) return "cannot reset: no frame yet";
+    publish_pending();
+    constexpr double exact_in_a_double = 9e15;
+    const bool sequence = command.value >= 0 && command.value < exact_in_a_double;
+    if (!sequence || !integrator_->reset(command.attitude, static_cast<std::uint64_t>(command.value)))
+        return fmt::format("cannot reset: sequence {:.0f} is not in the history", command.value);
+    return {};
+}
+
 /// This process was stopped or cut off: the bridge over its absence lacks the coning in it, the lanes that went on do not.
 void AttitudeIntegrator::rejoin(const VotedAttitude& voted)
 {
@@ -193,12 +216,10 @@ void AttitudeIntegrator::rejoin(const VotedAttitude& voted)
 void AttitudeIntegrator::on_command(const FaultCommand& command)
 {
     if (command.unit != settings_.process.node.unit || command.action != static_cast<std::uint8_t>(CommandAction::reset_attitude)) return;
-    double norm = 0;
-    for (const double component : command.attitude) norm += component * component;
-    const bool possible = integrator_ && std::abs(norm - 1) < 1e-6;
-    if (possible) integrator_->reset(command.attitude);
-    node_.report(possible ? EventCode::command_done : EventCode::command_refused, possible ? Severity::info : Severity::warning_low,
-                 identity_of(last_), 0, possible ? "attitude reset by command" : "cannot reset: no frame yet, or not a unit quaternion",
+    const auto refusal = reset_attitude(command);
+    node_.report(refusal.empty() ? EventCode::command_done : EventCode::command_refused,
+                 refusal.empty() ? Severity::info : Severity::warning_low, identity_of(last_), 0,
+                 refusal.empty() ? fmt::format("attitude reset by command as of sequence {:.0f}", command.value) : refusal,
                  command.request);
 }
 

@@ -17,8 +17,10 @@ public:
 private:
     void on_frame(const SensorFrame& frame);
     void on_verdict(const FaultVerdict& verdict);
+    void on_description(const ClusterDescription& description);
     void on_voted(const VotedAttitude& voted);
     void on_command(const FaultCommand& command);
+    std::string reset_attitude(const FaultCommand& command);
     void handle_accepted();
     bool prepare(const ClusterDescription& description, std::uint64_t first_sequence);
     void integrate(const SensorFrame& frame);

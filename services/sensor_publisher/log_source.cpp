@@ -1,4 +1,5 @@
 #include "describe.hpp"
+#include "quorient/attitude/levelling.hpp"
 #include "quorient/attitude/quaternion.hpp"
 #include "quorient/recording/reader.hpp"
 #include "quorient/recording/rest_statistics.hpp"
@@ -7,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <limits>
 #include <optional>
 
@@ -118,6 +120,33 @@ std::optional<std::string> difference(const ClusterDescription& calibrated, cons
     return std::nullopt;
 }
 
+void state_attitude(ClusterDescription& description, const std::array<double, 4>& attitude, InitialAttitude known)
+{
+    description.initial_attitude = attitude;
+    description.initial_attitude_known = static_cast<std::uint8_t>(known);
+}
+
+/// Roll and pitch from the mean specific force of all accelerometers, which stand as the gyros do.
+tl::expected<attitude::Quaternion, std::string> level_at_rest(const system::SensorSettings& settings, const recording::RestStatistics& rest,
+                                                              const ClusterDescription& description)
+{
+    if (settings.source.log->from_s > settings.source.log->rest_s)
+        return tl::make_unexpected(
+            fmt::format("levelled at rest, in the first {} s, but played from {} s: begin at rest or state initial_attitude",
+                        settings.source.log->rest_s, settings.source.log->from_s));
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t axis = 0; axis < description.axis_count; ++axis) {
+        if (!has_axis(rest.acceleration_mask, axis)) continue;
+        const Eigen::Map<const Eigen::Vector3d> direction(description.axis[axis].data());
+        information += direction * direction.transpose();
+        sum += rest.acceleration_m_s2[axis] * direction;
+    }
+    const Eigen::FullPivLU<Eigen::Matrix3d> solver(information);
+    if (!solver.isInvertible()) return tl::make_unexpected("cannot level: the log has no three accelerometer axes");
+    return attitude::level(solver.solve(sum), *settings.levelled_heading_rad);
+}
+
 /// The log's own geometry with the biases and sigmas of its beginning, or the system file's with its noise.
 tl::expected<ClusterDescription, std::string> describe_log(recording::Reader& reader, const system::SensorSettings& settings,
                                                            std::uint64_t epoch)
@@ -135,17 +164,23 @@ tl::expected<ClusterDescription, std::string> describe_log(recording::Reader& re
             return tl::make_unexpected(fmt::format("{}: the calibration is of other sensors: {}", settings.source.log->file, *other));
         description = calibration->description;
     }
+    std::optional<attitude::Quaternion> levelled;
     if (settings.source.log->rest_s > 0) {
         const auto rest = recording::rest_statistics(reader, settings.source.log->rest_s);
         if (!rest) return tl::make_unexpected(rest.error());
         description.bias = rest->bias_rad_s;
         if (!calibration) description.sigma = rest->sigma_rad;
+        if (settings.levelled_heading_rad) {
+            const auto attitude = level_at_rest(settings, *rest, description);
+            if (!attitude) return tl::make_unexpected(fmt::format("{}: {}", settings.source.log->file, attitude.error()));
+            levelled = *attitude;
+        }
     }
     description.epoch = epoch;
     description.revision = 1;
     description.unit = settings.process.node.unit;
-    description.initial_attitude_known = settings.initial_attitude.has_value();
-    if (settings.initial_attitude) description.initial_attitude = *settings.initial_attitude;
+    if (levelled) state_attitude(description, attitude::to_array(*levelled), InitialAttitude::measured);
+    if (settings.initial_attitude) state_attitude(description, *settings.initial_attitude, InitialAttitude::stated);
     runtime::copy_text(settings.unit_name, description.name);
     return description;
 }
@@ -173,9 +208,8 @@ tl::expected<std::unique_ptr<FrameSource>, std::string> make_log_source(const sy
     if (!description) return tl::make_unexpected(description.error());
     const auto cluster = geometry::make_cluster(*description);
     if (!cluster) return tl::make_unexpected(fmt::format("{}: {}", file, cluster.error()));
-    if (const auto start = attitude_at_start(file, *cluster); start && !description->initial_attitude_known) {
-        description->initial_attitude = *start;
-        description->initial_attitude_known = 1;
+    if (const auto start = attitude_at_start(file, *cluster); start && description->initial_attitude_known == 0) {
+        state_attitude(*description, *start, InitialAttitude::measured);
     }
 
     auto reader = recording::open_log(file);

@@ -16,7 +16,7 @@ public:
         description_.revision = 1;
         description_.unit = settings.process.node.unit;
         description_.initial_attitude = settings.initial_attitude.value_or(instrument_.initial_attitude());
-        description_.initial_attitude_known = 1;
+        description_.initial_attitude_known = static_cast<std::uint8_t>(InitialAttitude::stated);
         runtime::copy_text(settings.unit_name, description_.name);
     }
 

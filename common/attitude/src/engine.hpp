@@ -21,7 +21,7 @@ public:
     void mark_published();
     std::uint64_t history_too_short() const { return history_too_short_; }
     void seed(const VotedAttitude& voted);
-    void reset(const Quaternion& attitude);
+    bool reset(const Quaternion& attitude, std::uint64_t sequence);
     void begin_epoch(std::uint64_t epoch, const Quaternion& attitude);
 
 private:
@@ -34,7 +34,7 @@ private:
     Record& append_record();
     void integrate_appended();
     void drop_oldest();
-    void close_history(const Standing& standing);
+    void close_history(std::size_t count, const Standing& standing);
     void connect_seed();
 
     // Trust.

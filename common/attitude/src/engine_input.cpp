@@ -166,35 +166,37 @@ void Integrator::Engine::drop_oldest()
     else window_size_ = 0;
 }
 
-// Nothing before this can be corrected any more. The exclusions stay in force.
-void Integrator::Engine::close_history(const Standing& standing)
+// Nothing in the oldest `count` records can be corrected any more; what follows stands on this. The exclusions stay in force.
+void Integrator::Engine::close_history(std::size_t count, const Standing& standing)
 {
-    while (!history_.empty()) {
+    for (; count > 0; --count) {
         carried_ = history_.oldest().opinion;
         if (history_.oldest().own_opinion) trust_.hear_old(history_.oldest().opinion);
         history_.drop_oldest();
     }
     history_dropped_ = false;
     cursor_ = window_end_ = window_size_ = 0;
-    anchor_ = public_ = standing;
+    anchor_ = standing;
     integrated_again_ = 0;
-    mark_published();
+    unpublished_ = std::min(unpublished_, history_.size());
+    if (!history_.empty()) history_[0].standing.count = 0;
 }
 
-void Integrator::Engine::reset(const Quaternion& attitude)
+bool Integrator::Engine::reset(const Quaternion& attitude, std::uint64_t sequence)
 {
-    const bool announced = initialised_ && epoch_known_;
-    if (announced) {
-        ++reset_counter_;
-        reset_rotation_ = renormalised(attitude * public_.attitude.conjugate());
-    }
+    const std::size_t at = epoch_known_ ? history_.find(sequence) : history_.size();
+    if (at == history_.size() || history_[at].last_sequence != sequence) return false;
     Standing standing;
     standing.attitude = attitude;
-    standing.rate_rad_s = public_.rate_rad_s;
+    standing.rate_rad_s = history_[at].standing.rate_rad_s;
     standing.variance = settings_.initial_sigma_rad * settings_.initial_sigma_rad;
-    close_history(standing);
+    close_history(at + 1, standing);
+    catching_up_ = !initialised_;
     initialised_ = true;
-    seeded_ = seed_waits_ = catching_up_ = false;
+    seeded_ = seed_waits_ = false;
+    if (history_.empty()) finish_correction();
+    else work();
+    return true;
 }
 
 void Integrator::Engine::begin_epoch(std::uint64_t epoch, const Quaternion& attitude)
@@ -236,20 +238,12 @@ void Integrator::Engine::connect_seed()
         if (!seed_waits_) return;
         after = just_before ? 0 : at + 1;
     }
-    for (; after > 0; --after) {
-        carried_ = history_.oldest().opinion;
-        history_.drop_oldest();
-    }
+    close_history(after, standing_of(voted));
     const Opinion taken_over = opinion_of(voted);
     trust_.hear_old(taken_over);
     carried_.known |= taken_over.excluded;
     exclusions_known_ = exclusions_known_ || voted.isolated_mask != 0;
-    anchor_ = standing_of(voted);
-    history_dropped_ = false;
-    cursor_ = window_end_ = window_size_ = 0;
     public_ = history_.empty() ? anchor_ : history_.newest().standing;
-    integrated_again_ = 0;
-    unpublished_ = std::min(unpublished_, history_.size());
     reset_counter_ = voted.reset_counter;
     reset_rotation_ = from_array(voted.reset_rotation);
     seed_waits_ = false;
@@ -257,7 +251,6 @@ void Integrator::Engine::connect_seed()
     trust_.fold(history_);
     carry_opinion(0);
     refresh(0, history_.size());
-    if (!history_.empty()) history_[0].standing.count = 0;
 }
 
 }  // namespace quorient::attitude

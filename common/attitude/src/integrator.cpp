@@ -73,9 +73,9 @@ void Integrator::seed(const VotedAttitude& voted)
 {
     engine_->seed(voted);
 }
-void Integrator::reset(const std::array<double, 4>& attitude)
+bool Integrator::reset(const std::array<double, 4>& attitude, std::uint64_t sequence)
 {
-    engine_->reset(from_array(attitude).normalized());
+    return engine_->reset(from_array(attitude).normalized(), sequence);
 }
 void Integrator::begin_epoch(std::uint64_t epoch, const std::array<double, 4>& attitude)
 {

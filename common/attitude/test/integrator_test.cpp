@@ -132,7 +132,7 @@ TEST_F(AnIntegrator, coasts_without_three_axes_then_is_lost_and_never_not_a_numb
     integrator.apply(verdict_on(170));
     integrator.add(instrument.next());
     EXPECT_EQ(mode_of(integrator.state()), AttitudeMode::lost) << "what turned meanwhile stays unknown";
-    integrator.reset(to_array(instrument.attitude_after(170)));
+    ASSERT_TRUE(integrator.reset(to_array(instrument.attitude_after(170)), 170));
     integrator.add(instrument.next());
     EXPECT_EQ(mode_of(integrator.state()), AttitudeMode::normal);
     EXPECT_LT(error(), 3e-6);
@@ -283,7 +283,7 @@ TEST_F(AnIntegrator, is_reset_by_command_and_announces_it)
     for (int i = 0; i < 30; ++i) integrator.add(instrument.next());
     const auto before = integrator.publish();
     const Quaternion ordered = from_rotation_vector({0.5, 0, 0});
-    integrator.reset(to_array(ordered));
+    ASSERT_TRUE(integrator.reset(to_array(ordered), 29));
     const auto after = integrator.state();
     EXPECT_EQ(after.sequence, before.sequence);
     EXPECT_EQ(after.reset_counter, before.reset_counter + 1);
@@ -293,6 +293,42 @@ TEST_F(AnIntegrator, is_reset_by_command_and_announces_it)
     integrator.apply(isolating(29, 1, 10));  // what was before the reset needs no correction any more
     EXPECT_EQ(integrator.state().attitude, after.attitude);
     EXPECT_EQ(integrator.history_too_short(), 0u);
+}
+
+TEST_F(AnIntegrator, agrees_with_another_that_was_reset_to_the_same_attitude_at_another_frame)
+{
+    Integrator later = Integrator::make({}, cluster).value();
+    Instrument same(cluster, motion);
+    const Quaternion ordered = from_rotation_vector({0.1, -0.4, 0.3});
+    for (int i = 0; i < 400; ++i) {
+        if (i == 31) {
+            ASSERT_TRUE(integrator.reset(to_array(ordered), 30));
+        }
+        if (i == 390) {
+            ASSERT_TRUE(later.reset(to_array(ordered), 30));
+        }
+        integrator.add(instrument.next());
+        integrator.publish();
+        later.add(same.next());
+        if (i != 390) later.publish();
+        while (integrator.work() || later.work()) {
+        }
+    }
+    const Quaternion turned = instrument.attitude_after(30).conjugate() * instrument.attitude_after(399);
+    EXPECT_EQ(integrator.state().attitude, later.state().attitude);
+    EXPECT_LT(angle_to(integrator.state(), ordered * turned), 3e-6);
+    EXPECT_EQ(later.state().reset_counter, 1u);
+}
+
+TEST_F(AnIntegrator, refuses_a_reset_at_a_frame_that_it_does_not_have)
+{
+    EXPECT_FALSE(integrator.reset({1, 0, 0, 0}, 0)) << "no frame yet";
+    for (int i = 0; i < 30; ++i) integrator.add(instrument.next());
+    const auto before = integrator.publish();
+    EXPECT_FALSE(integrator.reset({0, 1, 0, 0}, 30)) << "still to come";
+    for (int i = 30; i < 3000; ++i) integrator.add(instrument.next());
+    EXPECT_FALSE(integrator.reset({0, 1, 0, 0}, 3)) << "older than the history";
+    EXPECT_EQ(integrator.state().reset_counter, before.reset_counter);
 }
 
 TEST(Integrator, refuses_settings_that_cannot_work_and_says_why)

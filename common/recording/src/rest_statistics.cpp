@@ -31,6 +31,8 @@ tl::expected<RestStatistics, std::string> rest_statistics(Reader& reader, double
 {
     std::array<Moments, max_axes> rate{};
     RestStatistics rest;
+    rest.acceleration_mask = all_axes(reader.description().axis_count);
+    std::array<Moments, max_axes> acceleration{};
     RecordedFrame frame;
     double intervals_s = 0;
     for (auto outcome = reader.next(frame); outcome != ReadOutcome::end; outcome = reader.next(frame)) {
@@ -38,6 +40,8 @@ tl::expected<RestStatistics, std::string> rest_statistics(Reader& reader, double
         if (static_cast<double>(frame.time_ns) * 1e-9 > seconds) break;
         for (std::size_t axis = 0; axis < frame.axis_count; ++axis)
             if (has_axis(frame.valid_mask, axis)) rate[axis].add(frame.increment[axis] / frame.interval_s);
+        rest.acceleration_mask &= frame.acceleration_mask;
+        for (std::size_t axis = 0; axis < frame.axis_count; ++axis) acceleration[axis].add(frame.acceleration_m_s2[axis]);
         ++rest.samples;
         intervals_s += frame.interval_s;
         rest.duration_s = static_cast<double>(frame.time_ns) * 1e-9;
@@ -50,6 +54,7 @@ tl::expected<RestStatistics, std::string> rest_statistics(Reader& reader, double
         if (moments.deviation() > moving_rad_s)
             return tl::unexpected(fmt::format("axis {} is not at rest in the first {} s: its rate deviates by {:.4f} rad/s (limit {:.4f})",
                                               axis, seconds, moments.deviation(), moving_rad_s));
+        rest.acceleration_m_s2[axis] = acceleration[axis].mean;
         rest.bias_rad_s[axis] = moments.mean;
         rest.sigma_rad[axis] = moments.deviation() * intervals_s / static_cast<double>(rest.samples);
         if (moments.squares == 0.0) rest.constant_mask |= axis_bit(axis);

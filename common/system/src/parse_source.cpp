@@ -1,5 +1,6 @@
 #include "parse_source.hpp"
 
+#include "quorient/attitude/levelling.hpp"
 #include "quorient/geometry/layouts.hpp"
 #include "quorient/runtime/text.hpp"
 
@@ -141,6 +142,39 @@ void parse_simulation(Section& source, System& system)
     else source.problem("quantize", way.error());
 }
 
+/// A quaternion, or a mapping: levelled by what accelerometers feel at rest, given here or found in the log.
+void parse_initial_attitude(Section& unit, SensorSettings& sensor)
+{
+    constexpr const char* key = "initial_attitude";
+    if (!unit.has(key)) return;
+    if (!unit.raw(key).IsMap()) {
+        std::vector<double> attitude;
+        unit.numbers(key, attitude);
+        double norm = 0;
+        for (const double component : attitude) norm += component * component;
+        if (attitude.size() != 4 || std::abs(norm - 1) > 1e-6)
+            unit.problem(key, "expected a unit quaternion [w, x, y, z], or {heading_deg: …} to level by accelerometers");
+        else sensor.initial_attitude = {attitude[0], attitude[1], attitude[2], attitude[3]};
+        return;
+    }
+    auto levelling = unit.section(key);
+    double heading_deg = 0;
+    std::vector<double> force_m_s2;
+    levelling.require("heading_deg");
+    levelling.number("heading_deg", heading_deg, {.unit = "deg"});
+    levelling.numbers("specific_force_m_s2", force_m_s2);
+    levelling.finish();
+    if (!levelling.has("specific_force_m_s2")) {
+        sensor.levelled_heading_rad = heading_deg * degree;
+    } else if (force_m_s2.size() != 3) {
+        levelling.problem("specific_force_m_s2", "expected three numbers, in the body frame");
+    } else {
+        const auto attitude = attitude::level({force_m_s2[0], force_m_s2[1], force_m_s2[2]}, heading_deg * degree);
+        if (attitude) sensor.initial_attitude = attitude::to_array(*attitude);
+        else levelling.problem("specific_force_m_s2", attitude.error());
+    }
+}
+
 }  // namespace
 
 void parse_unit(Section unit, System& system)
@@ -163,14 +197,7 @@ void parse_unit(Section unit, System& system)
     unit.number("range_deg_s", range_deg_s, {.lowest = 0, .unit = "deg/s"});
     if (system.sensor.cluster) system.sensor.cluster->range.setConstant(range_deg_s * degree);
 
-    std::vector<double> attitude;
-    unit.numbers("initial_attitude", attitude);
-    if (unit.has("initial_attitude")) {
-        double norm = 0;
-        for (const double component : attitude) norm += component * component;
-        if (attitude.size() != 4 || std::abs(norm - 1) > 1e-6) unit.problem("initial_attitude", "expected a unit quaternion [w, x, y, z]");
-        else system.sensor.initial_attitude = {attitude[0], attitude[1], attitude[2], attitude[3]};
-    }
+    parse_initial_attitude(unit, system.sensor);
     unit.finish();
 }
 
@@ -193,6 +220,8 @@ void parse_source(Section source, System& system)
 
     auto& cluster = system.sensor.cluster;
     if (kind == "simulation") {
+        if (system.sensor.levelled_heading_rad)
+            source.problem("kind", "a simulation has no accelerometers to level by: state unit.initial_attitude.specific_force_m_s2");
         if (!cluster) source.problem("kind", "a simulation needs unit.layout or unit.axes");
         else if (const auto ok = simulation::check(scenario, *cluster); !ok) source.problem("kind", ok.error());
     }

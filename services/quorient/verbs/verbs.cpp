@@ -9,6 +9,7 @@ void add_verbs(CLI::App& program)
     add_status(program);
     add_inject(program);
     add_readmit(program);
+    add_reset(program);
     add_health(program);
     add_record(program);
     add_replay(program);

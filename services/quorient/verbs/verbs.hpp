@@ -11,6 +11,7 @@ void add_echo(CLI::App& program);
 void add_status(CLI::App& program);
 void add_inject(CLI::App& program);
 void add_readmit(CLI::App& program);
+void add_reset(CLI::App& program);
 void add_health(CLI::App& program);
 void add_record(CLI::App& program);
 void add_replay(CLI::App& program);

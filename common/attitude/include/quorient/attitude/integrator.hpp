@@ -73,8 +73,10 @@ public:
     /// first frame after that identity has been integrated. Flag SEEDED from then on, until reset().
     void seed(const VotedAttitude& voted);
 
-    /// By command: the newest frame's attitude is this from now on. Announced as a reset; history before it is closed.
-    void reset(const std::array<double, 4>& attitude);
+    /// By command: the attitude at the end of this sequence is this; the frames after it are integrated again from there, so that
+    /// lanes that hear it at different frames agree. Announced as a reset; history before it is closed.
+    /// @returns false where the history does not reach that frame, or it has not come yet: nothing is changed.
+    bool reset(const std::array<double, 4>& attitude, std::uint64_t sequence);
 
     /// The description of an epoch states the attitude at the start of its sequence 0: the first frame of that epoch starts
     /// from it, without mode LOST.

@@ -30,7 +30,7 @@ struct ClusterDescription {
     std::uint8_t kind = 0;  ///< SensorKind
     std::uint8_t axis_count = 0;
     std::uint8_t instrument_count = 0;
-    std::uint8_t initial_attitude_known = 0;
+    std::uint8_t initial_attitude_known = 0;  ///< InitialAttitude
     std::array<std::uint8_t, 4> padding{};
 };
 

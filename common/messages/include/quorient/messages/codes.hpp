@@ -95,6 +95,13 @@ enum class Vendor : std::uint8_t { unknown = 0, local = 1, fastdds = 2, cycloned
 /// The path that samples really take.
 enum class Transport : std::uint8_t { unknown = 0, in_process = 1, udp = 2, shared_memory = 3, iceoryx = 4 };
 
+/// What a description says of the attitude at the start of its sequence 0.
+enum class InitialAttitude : std::uint8_t {
+    unknown = 0,
+    stated = 1,    ///< by configuration: true when the system starts, not when its publisher starts again
+    measured = 2,  ///< at the start of this very epoch
+};
+
 enum class CommandAction : std::uint8_t {
     unknown = 0,
     inject = 1,

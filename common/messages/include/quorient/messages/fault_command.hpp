@@ -8,7 +8,7 @@ namespace quorient {
 /// An order to a unit's services. Each that it concerns answers with one HealthEvent that carries the request.
 struct FaultCommand {
     std::uint64_t request = 0;
-    double value = 0;    ///< unit by kind of fault
+    double value = 0;    ///< unit by kind of fault; for reset_attitude: the sequence at whose end the attitude holds
     double start_s = 0;  ///< from now
     double end_s = 0;    ///< from now; infinite = until cleared
     double frequency_hz = 0;

@@ -4,13 +4,15 @@
 
 namespace quorient::recording {
 
-/// What a log's beginning says of its gyros while nothing moves.
+/// What a log's beginning says of its sensors while nothing moves.
 struct RestStatistics {
     std::array<double, max_axes> bias_rad_s{};
     std::array<double, max_axes> sigma_rad{};  ///< of one increment at the mean interval, bias removed
     std::uint64_t samples = 0;
     double duration_s = 0;
-    AxisMask constant_mask = 0;  ///< axes that never changed: dead, or coarser than their noise
+    std::array<double, max_axes> acceleration_m_s2{};  ///< mean of each accelerometer axis
+    AxisMask acceleration_mask = 0;                    ///< accelerometer axes that the log has in every such frame
+    AxisMask constant_mask = 0;                        ///< axes that never changed: dead, or coarser than their noise
 };
 
 /// Reads the first seconds of a log that has just been opened.

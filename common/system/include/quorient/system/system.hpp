@@ -50,6 +50,7 @@ struct SensorSettings {
     double wait_s = 5;  ///< for the consumers, then it goes on without them
     std::vector<std::string> consumers;
     std::optional<std::array<double, 4>> initial_attitude;  ///< absent: the simulation's own, unknown for a log
+    std::optional<double> levelled_heading_rad;             ///< roll and pitch from the log's accelerometers at rest, this heading
     SensorKind kind = SensorKind::gyro;
 };
 
@@ -114,7 +115,7 @@ struct System {
 struct Overrides {
     std::optional<Vendor> dds;  ///< of every process
     std::optional<std::uint32_t> domain;
-    std::string process;             ///< the one that this host runs: only its network is checked; empty = every one
+    std::string process;  ///< the one that this host runs: only its network is checked; empty = every one
     std::vector<std::string>
         set;  ///< `source.speed=2`, `source.faults+=axis=1,kind=zero`: values of the file, as runtime::assign takes them
 };
