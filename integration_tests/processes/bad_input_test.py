@@ -45,6 +45,11 @@ class SystemFile(ProcessTest):
     def test_refuses_a_method_that_four_axes_do_not_carry(self):
         self.assertRegex(self.refused(DEMO.replace("method: extrapolation", "method: invariants, tolerance: 1.0e-5")), r"lanes\[2\]")
 
+    def test_refuses_to_level_a_simulation_that_has_no_accelerometers(self):
+        unit = DEMO.replace("  layout: cone-4\n", "  layout: cone-4\n  initial_attitude: {heading_deg: 30%s}\n")
+        self.assertIn("no accelerometers", self.refused(unit % ""))
+        self.assertRegex(self.refused(unit % ", specific_force_m_s2: [0, 0, 14]"), r"specific_force_m_s2.*must be at rest")
+
     def test_refuses_a_fault_of_an_unknown_kind(self):
         self.assertIn("kind", self.refused(DEMO.replace("kind=scale", "kind=soft")))
 

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace quorient::integrator {
 
@@ -21,6 +22,9 @@ constexpr std::uint64_t longest_own_absence = 5;
 
 /// They do when their standard deviation is so many times smaller; where everybody was cut off, all are alike.
 constexpr double much_surer = 4;
+
+/// An order about a frame that other lanes have had already waits for it; one further off is a mistake.
+constexpr double most_frames_ahead = 64;
 
 double angle_deg(const std::array<double, 4>& rotation)
 {
@@ -152,6 +156,7 @@ void AttitudeIntegrator::publish_pending()
     node_.handled(identity_of(attitude), arrival_ns_);
     tell_changes(attitude);
     last_ = attitude;
+    if (waiting_reset_ && static_cast<double>(last_.sequence) >= waiting_reset_->value) on_command(*std::exchange(waiting_reset_, {}));
 }
 
 void AttitudeIntegrator::tell_changes(const AttitudeState& attitude)
@@ -196,7 +201,6 @@ std::string AttitudeIntegrator::reset_attitude(const FaultCommand& command)
     for (const double component : command.attitude) norm += component * component;
     if (!(std::abs(norm - 1) < 1e-6)) return "cannot reset: not a unit quaternion";
     if (!integrator_) return "cannot reset: no frame yet";
-    publish_pending();
     constexpr double exact_in_a_double = 9e15;
     const bool sequence = command.value >= 0 && command.value < exact_in_a_double;
     if (!sequence || !integrator_->reset(command.attitude, static_cast<std::uint64_t>(command.value)))
@@ -216,6 +220,12 @@ void AttitudeIntegrator::rejoin(const VotedAttitude& voted)
 void AttitudeIntegrator::on_command(const FaultCommand& command)
 {
     if (command.unit != settings_.process.node.unit || command.action != static_cast<std::uint8_t>(CommandAction::reset_attitude)) return;
+    publish_pending();
+    const double frames_ahead = command.value - static_cast<double>(last_.sequence);
+    if (integrator_ && frames_ahead > 0 && frames_ahead < most_frames_ahead) {
+        waiting_reset_ = command;
+        return;
+    }
     const auto refusal = reset_attitude(command);
     node_.report(refusal.empty() ? EventCode::command_done : EventCode::command_refused,
                  refusal.empty() ? Severity::info : Severity::warning_low, identity_of(last_), 0,

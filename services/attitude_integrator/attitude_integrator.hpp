@@ -37,10 +37,11 @@ private:
     runtime::Timer& patience_timer_;
     runtime::FrameIntake intake_;
     std::optional<attitude::Integrator> integrator_;
-    std::optional<VotedAttitude> voted_;    ///< newest, until this integrator has started
-    std::optional<FaultVerdict> verdict_;   ///< newest of the lane's detector
-    std::optional<Identity> pending_;       ///< integrated, not yet published
-    std::optional<Identity> absent_until_;  ///< first frame after an absence of this process
+    std::optional<VotedAttitude> voted_;         ///< newest, until this integrator has started
+    std::optional<FaultVerdict> verdict_;        ///< newest of the lane's detector
+    std::optional<Identity> pending_;            ///< integrated, not yet published
+    std::optional<Identity> absent_until_;       ///< first frame after an absence of this process
+    std::optional<FaultCommand> waiting_reset_;  ///< for its frame
     AttitudeState last_;
     Stamps stamps_{};
     std::int64_t arrival_ns_ = 0;
