@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""The examples of idl/examples, built with the installed IDL alone, see and drive the pipeline."""
+import json
+import re
+import signal
+import unittest
+
+from foreign import BIN, InteropTest, angle, conjugate, example, product
+from harness import CONFIGURATIONS
+
+LINE = re.compile(r"(\d+) (\d+) (\d+) voter (\d+) level (\d+) mode (\d+) q (\S+) (\S+) (\S+) (\S+) sigma (\S+) rad")
+FULL = 1
+QUANTUM_RAD = 0.4848e-6
+
+
+class Voted:
+    """One printed line of an example consumer."""
+
+    def __init__(self, line):
+        found = LINE.fullmatch(line)
+        assert found, f"not a sample: {line!r}"
+        self.epoch, self.sequence, self.output_sequence, self.voter, self.level, self.mode = map(int, found.groups()[:6])
+        self.attitude = list(map(float, found.groups()[6:10]))
+
+
+def samples(log):
+    """Of whole lines alone: the last one may still be written."""
+    return [Voted(line) for line in log.read_text().split("\n")[:-1]]
+
+
+class Examples(InteropTest):
+    CONSUMERS = ("consumer_cyclonedds", "consumer_fastdds")
+
+    def start_consumers(self):
+        return {name: self.start_logged(name, example(name), self.domain) for name in self.CONSUMERS}
+
+    def stop(self, consumers):
+        for name, (process, _) in consumers.items():
+            process.send_signal(signal.SIGTERM)
+            self.assertEqual(process.wait(10), 0, name)
+
+    def record(self, *arguments):
+        """A recording of the demo's four gyros. @returns the cluster, the recording, and the true attitude of each sequence."""
+        layout = json.loads(self.run_program("quorient", "layout", "cone-4", "--json").stdout)
+        axes = self.write("axes.csv", "".join(",".join(map(repr, axis)) + "\n" for axis in layout["axes"]))
+        motion = ("quorient", "simulate", "coning", "--axes", axes, "--interval", 0.005, "--quantum", QUANTUM_RAD, "--quantize", "carry")
+        recording = self.write("recording.csv", self.run_program(*motion, *arguments).stdout)
+        start = json.loads(self.run_program(*motion[:7], "--at", 0, "--json").stdout)["attitude"]
+        rows = [line.split(",") for line in recording.read_text().splitlines() if line[0].isdigit()]
+        # The publisher states (1, 0, 0, 0) at the beginning: the reference frame is turned by that much.
+        described = self.write("described.csv", "".join(f"{line},0,{QUANTUM_RAD}\n" for line in axes.read_text().splitlines()))
+        return described, recording, [product(conjugate(start), list(map(float, row[5:9]))) for row in rows]
+
+    def play(self, *faults):
+        """@returns the true attitudes, what each consumer printed, and the verdicts' states seen at the end."""
+        axes, recording, truth = self.record("--duration", 6, *faults)
+        services = self.start_services(CONFIGURATIONS / "demo.yaml")
+        consumers = self.start_consumers()
+        readers = 6  # three detectors, three integrators
+        publisher, said = self.start_logged("publisher", example("publisher_cyclonedds"), self.domain, axes, recording, readers)
+        self.assertEqual(publisher.wait(60), 0, said.read_text())
+        self.assertRegex(said.read_text(), rf"^{len(truth)} frames of 4 axes")
+        self.all_alive(services)
+        for _, log in consumers.values():
+            self.eventually(lambda: len(samples(log)) > 0 and samples(log)[-1].sequence == len(truth) - 1, f"the last frame in {log}")
+        verdicts = self.echo("verdict", 3)
+        self.stop(consumers)
+        return truth, {name: samples(log) for name, (_, log) in consumers.items()}, verdicts
+
+    def assert_stream_is_true(self, truth, stream, from_sequence=0):
+        self.assertGreater(len(stream), 0.9 * len(truth))
+        self.assertEqual({sample.voter for sample in stream[20:]}, {1}, "the stronger voter owns the stream")
+        for before, after in zip(stream[20:], stream[21:]):
+            self.assertGreater(after.output_sequence, before.output_sequence)
+        errors = [angle(sample.attitude, truth[sample.sequence]) for sample in stream if sample.sequence >= from_sequence]
+        self.assertLess(max(errors), 3e-6)
+
+    def test_a_recording_played_by_the_c_publisher_reaches_both_consumers(self):
+        truth, streams, verdicts = self.play()
+        for name, stream in streams.items():
+            with self.subTest(name):
+                self.assert_stream_is_true(truth, stream)
+                self.assertEqual(stream[len(stream) // 2].level, FULL)
+        self.assertEqual({verdict["isolated_mask"] for verdict in verdicts}, {0})
+
+    def test_a_fault_in_the_recording_is_isolated_and_the_consumers_keep_the_attitude(self):
+        truth, streams, verdicts = self.play("--fault", "axis=1,kind=scale,value=0.8,start=2")
+        for name, stream in streams.items():
+            with self.subTest(name):
+                self.assert_stream_is_true(truth, stream, from_sequence=410)  # the fault begins in frame 400
+        self.assertEqual({verdict["isolated_mask"] for verdict in verdicts}, {0b10})
+
+    def test_consumers_go_on_with_the_second_voter_when_the_first_is_killed(self):
+        pipeline, log = self.start_logged(
+            "launch", BIN / "quorient", "launch", CONFIGURATIONS / "demo.yaml", "--domain", self.domain, "--json",
+            "--set", "source.duration_s=60", "--set", "source.faults=[]", "--set", "expect=null",
+        )
+        consumers = self.start_consumers()
+        for _, log in consumers.values():
+            self.eventually(lambda: any(sample.voter == 1 for sample in samples(log)), f"voter 1 in {log}")
+        status = json.loads(self.run_program("quorient", "status", "--domain", self.domain, "--json").stdout)
+        process = next(service["process"] for service in status["services"] if service["name"] == "voter-1")
+        self.kill(process)
+        for _, log in consumers.values():
+            self.eventually(lambda: any(sample.voter == 2 for sample in samples(log)), f"voter 2 in {log}", timeout=5)
+        self.stop(consumers)
+        pipeline.send_signal(signal.SIGTERM)
+        pipeline.wait(10)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

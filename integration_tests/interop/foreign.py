@@ -1,0 +1,108 @@
+"""Foreign nodes for the tests: builds them from the installed IDL alone, starts them, reads what they print."""
+import functools
+import json
+import math
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "processes"))
+from harness import BIN, ProcessTest  # noqa: E402
+
+BUILD = pathlib.Path(os.environ.get("QUORIENT_BUILD", BIN.parent))
+# Kept between runs, so that only what changed is built again.
+WORK = BUILD / "integration_tests/interop"
+BUILD_TIMEOUT_S = 240
+
+
+def run(*command, timeout=BUILD_TIMEOUT_S):
+    result = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=timeout)
+    assert result.returncode == 0, f"{' '.join(map(str, command))}\n{result.stdout}{result.stderr}"
+    return result.stdout
+
+
+@functools.cache
+def installed_idl():
+    """The folder that a user gets with the package: the IDL and the examples."""
+    prefix = WORK / "installed"
+    run("cmake", "--install", BUILD, "--component", "quorient-dev", "--prefix", prefix)
+    return prefix / "share/quorient/idl"
+
+
+@functools.cache
+def build(source, program):
+    """Builds a project outside our tree with the installed IDL. @returns the program."""
+    folder = WORK / program
+    run("cmake", "-S", source, "-B", folder, f"-DQUORIENT_IDL={installed_idl() / 'quorient_msgs.idl'}")
+    run("cmake", "--build", folder)
+    return folder / program
+
+
+def example(program):
+    return build(installed_idl() / "examples" / program, program)
+
+
+def conjugate(q):
+    return [q[0], -q[1], -q[2], -q[3]]
+
+
+def product(p, q):
+    return [
+        p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
+        p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
+        p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1],
+        p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0],
+    ]
+
+
+def angle(p, q):
+    """Between two attitudes [rad]."""
+    w, x, y, z = product(conjugate(p), q)
+    return 2 * math.atan2(math.hypot(x, y, z), abs(w))
+
+
+class InteropTest(ProcessTest):
+    """A domain of its own; output of long-running programs goes to files, so that nobody blocks on a full pipe."""
+
+    first_domain = int(os.environ.get("QUORIENT_INTEROP_DOMAIN", 120 + os.getpid() * 7 % 90))
+    domains = int(os.environ.get("QUORIENT_INTEROP_DOMAINS", 20))
+    used = 0
+
+    def setUp(self):
+        super().setUp()
+        self.domain = self.first_domain + InteropTest.used % self.domains
+        InteropTest.used += 1
+
+    def start_logged(self, name, *command):
+        """@returns the process and the file that its output goes to."""
+        log = self.run_directory / f"{name}.out"
+        with log.open("w") as output:
+            process = subprocess.Popen(list(map(str, command)), env=self.environment, stdout=output, stderr=subprocess.STDOUT)
+        self.processes.append(process)
+        return process, log
+
+    def start_services(self, configuration, *arguments):
+        """Every process of a system file but its sensor. @returns {name: (process, log)}."""
+        voters = [("quorient-voter", f"voter-{i}") for i in (1, 2)]
+        lanes = [(f"quorient-{kind}", f"{kind}-{lane}") for lane in "abc" for kind in ("attitude", "fdi")]
+        return {
+            name: self.start_logged(name, BIN / program, configuration, "--name", name, "--domain", self.domain, *arguments)
+            for program, name in voters + lanes
+        }
+
+    def echo(self, topic, count, *arguments, timeout=10):
+        result = self.run_program(
+            "quorient", "echo", topic, "--count", count, "--json", "--timeout", timeout, "--domain", self.domain, *arguments, timeout=timeout + 20
+        )
+        return [json.loads(line) for line in result.stdout.splitlines()]
+
+    def all_alive(self, services):
+        for name, (process, log) in services.items():
+            self.assertIsNone(process.poll(), f"{name} ended with {process.returncode}:\n{log.read_text()[-2000:]}")
+
+    def kill(self, process):
+        """@param process  id of a service of this test's own pipeline."""
+        os.kill(process, signal.SIGKILL)
