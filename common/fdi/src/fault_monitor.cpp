@@ -3,6 +3,7 @@
 #include "quorient/fdi/make_detector.hpp"
 
 #include <bit>
+#include <utility>
 
 namespace quorient::fdi {
 
@@ -28,11 +29,11 @@ tl::expected<FaultMonitor, std::string> FaultMonitor::make(std::unique_ptr<Detec
 tl::expected<FaultMonitor, std::string> FaultMonitor::make(std::unique_ptr<Detector> detector, const VerdictSettings& verdict,
                                                            std::size_t channels)
 {
-    if (verdict.readmit_after_s)
-        return tl::unexpected(std::string("readmit_after_s: channels without directions are readmitted by command only"));
     const auto machine = VerdictMachine::make(verdict, channels, 1);
     if (!machine) return tl::unexpected(machine.error());
-    return FaultMonitor(std::move(detector), *machine, all_axes(channels));
+    FaultMonitor monitor(std::move(detector), *machine, all_axes(channels));
+    if (verdict.readmit_after_s) monitor.observer_readmission_.emplace(*verdict.readmit_after_s);
+    return monitor;
 }
 
 FaultMonitor::FaultMonitor(std::unique_ptr<Detector> detector, const VerdictMachine& machine, AxisMask all)
@@ -49,6 +50,7 @@ const FaultVerdict& FaultMonitor::assess(const SensorFrame& frame)
     }
     started_ = true;
 
+    if (const AxisMask returning = std::exchange(returning_, 0); returning != 0) readmit(returning);
     const Measurement measurement = measurement_of(frame);
     if (readmission_) readmit(readmission_->watch(measurement, machine_.isolated(), all_ & ~machine_.isolated()));
     const AxisMask broken = health_ ? health_->assess(measurement) : 0;
@@ -61,6 +63,10 @@ const FaultVerdict& FaultMonitor::assess(const SensorFrame& frame)
     const AxisMask newly = machine_.isolated() & ~before;
     if (readmission_ && newly != 0) readmission_->excluded(newly, measurement, all_ & ~machine_.isolated());
     after_change(before);
+    if (observer_readmission_) {
+        const bool healthy = verdict_.state == static_cast<std::uint8_t>(VerdictState::healthy);
+        returning_ = observer_readmission_->watch(*detector_, frame.interval_s, machine_.isolated(), newly, healthy);
+    }
 
     verdict_.sample_time_ns = frame.sample_time_ns;
     verdict_.unit = frame.unit;

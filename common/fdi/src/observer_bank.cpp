@@ -103,8 +103,7 @@ tl::expected<void, std::string> ObserverBank::design(const ObserverSettings& set
 {
     auto designed = scheme_ == ObserverScheme::directional ? design_directional(settings) : design_blind(settings);
     if (!designed) return designed;
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(plant_.c);
-    if (qr.rank() == plant_.states()) return {};
+    state_is_measured_ = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(plant_.c).rank() == plant_.states();
     for (const Observer& observer : observers_) {
         const double rate = slowest_rate(plant_.a - observer.gain * plant_.c);
         settling_frames_ = std::max(settling_frames_, static_cast<std::uint64_t>(std::ceil(-std::log(settled) / rate / interval_s_)));
@@ -188,7 +187,7 @@ void ObserverBank::set_noise(const ObserverSettings& settings)
         const Eigen::MatrixXd drive = observer.drive * observer.gain;
         observer.disturbance = drive * variance_.asDiagonal() * drive.transpose();
     }
-    start(Outputs::Zero(plant_.outputs()));
+    start(Outputs::Zero(plant_.outputs()), 0);
 }
 
 /// var r = C P C' + R
@@ -238,16 +237,20 @@ Poles ObserverBank::poles(std::size_t observer) const
     return poles_of(plant_.a - observers_[observer].gain * plant_.c);
 }
 
-void ObserverBank::start(const Outputs& samples)
+std::uint64_t ObserverBank::start(const Outputs& samples, AxisMask valid)
 {
+    Outputs told = samples;
+    for (Eigen::Index channel = 0; channel < told.size(); ++channel)
+        if (!has_axis(valid, static_cast<std::size_t>(channel))) told(channel) = 0;
     for (Observer& observer : observers_) {
-        observer.estimate = from_samples_.lazyProduct(samples);
+        observer.estimate = from_samples_.lazyProduct(told);
         observer.residual.setZero();
         observer.sensitivity.setZero();
         observer.covariance = from_samples_.lazyProduct(SmallMatrix(variance_.asDiagonal() * from_samples_.transpose()));
         set_noise_limits(observer);
         set_limits(observer);
     }
+    return state_is_measured_ && valid == all_axes(channels()) ? 0 : settling_frames_;
 }
 
 void ObserverBank::compare(const Outputs& samples, AxisMask valid)

@@ -40,9 +40,9 @@ void ObserverDetector::assess(const Measurement& measurement, Assessment& assess
         return;
     }
     follow_to(measurement);
-    const AxisMask judged = measurement.valid & all_axes(bank_.channels()) & ~excluded_;
-    bank_.compare(samples_, judged | (measurement.valid & excluded_));
-    if (frames_ < bank_.settling_frames()) assessment.outcome = Outcome::warming_up;
+    valid_ = measurement.valid & all_axes(bank_.channels());
+    bank_.compare(samples_, valid_);
+    if (frames_ < settling_frames_) assessment.outcome = Outcome::warming_up;
     else if (bank_.scheme() == ObserverScheme::directional) judge_directional(assessment);
     else judge_blind(assessment);
     bank_.advance(input_);
@@ -69,7 +69,7 @@ void ObserverDetector::follow_to(const Measurement& measurement)
     const bool follows = last_ && measurement.identity.epoch == last_->epoch && measurement.identity.sequence > last_->sequence &&
                          measurement.identity.sequence - last_->sequence <= longest_gap;
     if (!follows) {
-        bank_.start(samples_);
+        settling_frames_ = bank_.start(samples_, measurement.valid & working());
         frames_ = alarm_frames_ = 0;
         return;
     }
@@ -162,6 +162,40 @@ void ObserverDetector::judge_last(AxisMask left, Assessment& assessment) const
     if (assessment.statistic <= 1) return;
     assessment.outcome = Outcome::isolated;
     assessment.isolated = left;
+}
+
+std::optional<Expectation> ObserverDetector::expectation(std::size_t channel) const
+{
+    const auto row = static_cast<Eigen::Index>(channel);
+    if (!settled() || !has_axis(valid_, channel)) return std::nullopt;
+    const AxisMask others = excluded_ & ~axis_bit(channel);
+    if (bank_.scheme() == ObserverScheme::directional) {
+        bool quiet = others == 0;
+        for (std::size_t observer = 0; observer < bank_.size(); ++observer)
+            quiet = quiet && bank_.metric(observer) <= bank_.metric_limit(observer);
+        return Expectation{(samples_(row) - bank_.residual(channel)(row)) * interval_s_, quiet};
+    }
+    const auto without = bank_.find(others | axis_bit(channel));
+    const auto observer = without ? without : bank_.find(others);
+    if (!observer) return std::nullopt;
+    return Expectation{(samples_(row) - bank_.residual(*observer)(row)) * interval_s_, agrees_with(working() | axis_bit(channel), others)};
+}
+
+/// Nothing that the observers without `excluded` (and one more channel) see contradicts the trusted channels.
+bool ObserverDetector::agrees_with(AxisMask trusted, AxisMask excluded) const
+{
+    if (const auto all_trusted = bank_.find(excluded); all_trusted && worst(*all_trusted, trusted) > 1) return false;
+    for (std::size_t channel = 0; channel < bank_.channels(); ++channel) {
+        const auto observer = bank_.find(excluded | axis_bit(channel));
+        if (has_axis(trusted, channel) && observer && worst(*observer, trusted) > 1) return false;
+    }
+    return true;
+}
+
+std::string_view ObserverDetector::reason() const
+{
+    if (!last_) return "the known input is missing, and nothing can be expected without it";
+    return settled() ? std::string_view{} : "the observers settle: the samples do not tell the whole state";
 }
 
 double ObserverDetector::worst(std::size_t observer, AxisMask channels) const

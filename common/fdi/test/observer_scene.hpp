@@ -70,7 +70,7 @@ inline void follow(const PaperRun& run, ObserverBank& bank, const std::function<
 {
     bool started = false;
     run.play([&](double time, const Eigen::VectorXd& state, const Eigen::VectorXd& sample, double rudder) {
-        if (!started) bank.start(sample);
+        if (!started) bank.start(sample, all_axes(bank.channels()));
         started = true;
         bank.compare(sample, all_axes(bank.channels()));
         see(time, state);

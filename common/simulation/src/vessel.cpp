@@ -13,24 +13,6 @@ namespace {
 
 constexpr std::uint64_t noise_stream = 1'000'000;
 
-/// The channels as the fault injector sees them: each its own instrument, no direction that anything here would use.
-geometry::SensorCluster channels_of(const VesselScenario& scenario)
-{
-    const Eigen::Index count = scenario.model.c.rows();
-    geometry::SensorCluster cluster;
-    cluster.axes = geometry::Axes::Zero(count, 3);
-    cluster.sigma = geometry::AxisVector::Constant(count, scenario.noise * scenario.interval_s);
-    cluster.quantum = geometry::AxisVector::Zero(count);
-    cluster.range = geometry::AxisVector::Zero(count);
-    cluster.interval_s = scenario.interval_s;
-    cluster.kind = SensorKind::vessel_rates;
-    for (Eigen::Index channel = 0; channel < count; ++channel) {
-        cluster.instrument.push_back(static_cast<std::size_t>(channel));
-        cluster.instrument_name.push_back(fmt::format("channel{}", channel));
-    }
-    return cluster;
-}
-
 tl::expected<void, std::string> check_size(const char* name, const Eigen::MatrixXd& matrix, Eigen::Index rows, Eigen::Index columns)
 {
     if (matrix.rows() == rows && matrix.cols() == columns && matrix.allFinite()) return {};
@@ -69,6 +51,24 @@ std::vector<FaultSpec> paper_faults()
     return {gyro, accelerometer};
 }
 
+geometry::SensorCluster channels_of(const VesselScenario& scenario)
+{
+    const Eigen::Index count = scenario.model.c.rows();
+    geometry::SensorCluster cluster;
+    cluster.axes = geometry::Axes::Zero(count, 3);
+    cluster.sigma = geometry::AxisVector::Constant(count, scenario.noise * scenario.interval_s);
+    cluster.quantum = geometry::AxisVector::Zero(count);
+    cluster.range = geometry::AxisVector::Zero(count);
+    cluster.interval_s = scenario.interval_s;
+    cluster.kind = SensorKind::vessel_rates;
+    for (std::size_t channel = 0; channel < static_cast<std::size_t>(count); ++channel) {
+        cluster.instrument.push_back(channel);
+        cluster.instrument_name.push_back(channel < scenario.channels.size() ? scenario.channels[channel]
+                                                                             : fmt::format("channel{}", channel));
+    }
+    return cluster;
+}
+
 tl::expected<void, std::string> check(const VesselScenario& scenario)
 {
     const Eigen::Index n = scenario.model.a.rows();
@@ -86,6 +86,8 @@ tl::expected<void, std::string> check(const VesselScenario& scenario)
     if (!(scenario.noise >= 0) || !std::isfinite(scenario.noise)) return tl::unexpected(std::string("the noise must be 0 or more"));
     if (!(scenario.rudder_period_s > 0) || !std::isfinite(scenario.rudder_rad))
         return tl::unexpected(std::string("the rudder needs a finite amplitude and a period above 0 s"));
+    if (!scenario.channels.empty() && scenario.channels.size() != static_cast<std::size_t>(channels))
+        return tl::unexpected(fmt::format("{} names for {} channels", scenario.channels.size(), channels));
     for (const FaultSpec& fault : scenario.faults) {
         if (auto resolved = resolve(fault, channels_of(scenario)); !resolved) return tl::unexpected(resolved.error());
     }
@@ -103,6 +105,11 @@ SimulatedVessel::SimulatedVessel(const VesselScenario& scenario)
         [[maybe_unused]] const auto added = faults_.add(fault);
         assert(added && "the scenario is to be checked first");
     }
+}
+
+double SimulatedVessel::rudder_at(double time) const
+{
+    return scenario_.rudder_rad * std::sin(2 * std::numbers::pi * time / scenario_.rudder_period_s);
 }
 
 bool SimulatedVessel::next(SensorFrame& frame, Eigen::VectorXd& state)
@@ -125,11 +132,14 @@ bool SimulatedVessel::next(SensorFrame& frame, Eigen::VectorXd& state)
         }
         frame.increment[static_cast<std::size_t>(channel)] = value * scenario_.interval_s;
     }
-    frame.known_input[0] = scenario_.rudder_rad * std::sin(2 * std::numbers::pi * time / scenario_.rudder_period_s);
-    faults_.apply(frame, time);
+    const double rudder = rudder_at(time);
+    const bool lost = time >= scenario_.rudder_lost_from_s && time < scenario_.rudder_lost_to_s;
+    frame.known_input[0] = lost ? std::numeric_limits<double>::quiet_NaN() : rudder;
+    faulty_ = faults_.apply(frame, time);
+    accumulator_.add(frame);
 
     state = state_;
-    state_ = hold_.state * state_ + hold_.input * frame.known_input[0];
+    state_ = hold_.state * state_ + hold_.input * rudder;
     ++sequence_;
     return true;
 }

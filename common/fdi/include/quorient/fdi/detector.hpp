@@ -4,8 +4,11 @@
 #include "quorient/messages/limits.hpp"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string_view>
 
 namespace quorient::fdi {
 
@@ -31,13 +34,13 @@ enum class Outcome : std::uint8_t {
 
 struct Assessment {
     Outcome outcome = Outcome::warming_up;
-    AxisMask isolated = 0;  ///< named axes; under `suspect` the likeliest culprit, if there is one
+    AxisMask isolated = 0;                             ///< named axes; under `suspect` the likeliest culprit, if there is one
     std::array<AxisMask, max_candidates> candidate{};  ///< best first
     std::uint8_t candidate_count = 0;
     bool candidates_truncated = false;
     double statistic = 0;
-    double threshold = 0;  ///< in the statistic's unit
-    std::uint64_t onset = never;  ///< first sequence that looks contaminated, where the method estimates it
+    double threshold = 0;                     ///< in the statistic's unit
+    std::uint64_t onset = never;              ///< first sequence that looks contaminated, where the method estimates it
     std::array<double, max_axes> residual{};  ///< in the unit of the measurement
     std::array<double, max_axes> bound{};
 
@@ -46,6 +49,12 @@ struct Assessment {
         if (candidate_count < max_candidates) candidate[candidate_count++] = set;
         else candidates_truncated = true;
     }
+};
+
+/// What a method with a model of the motion makes of an excluded axis in the newest frame.
+struct Expectation {
+    double value = 0;     ///< what the axis should have read [unit of the measurement]
+    bool agrees = false;  ///< with the axis trusted again this frame would be a healthy one
 };
 
 /// One detection method on one cluster. Frames come in order; nothing is allocated per frame.
@@ -61,6 +70,12 @@ public:
 
     /// How many further simultaneous axis faults can be detected with the axes that are left.
     virtual unsigned detectable_remaining() const = 0;
+
+    /// Of any axis in the newest frame. @returns nothing where the method has no model of the motion, or cannot say in this frame.
+    virtual std::optional<Expectation> expectation(std::size_t) const { return std::nullopt; }
+
+    /// Why the newest assessment is `blind` or `warming_up`, where that has a reason of its own; else empty.
+    virtual std::string_view reason() const { return {}; }
 
     /// Forgets everything learnt from earlier frames; exclusions stay.
     virtual void reset() {}

@@ -2,6 +2,7 @@
 
 #include "quorient/fdi/axis_health.hpp"
 #include "quorient/fdi/detector.hpp"
+#include "quorient/fdi/observer_readmission.hpp"
 #include "quorient/fdi/readmission.hpp"
 #include "quorient/fdi/settings.hpp"
 #include "quorient/fdi/verdict_machine.hpp"
@@ -28,8 +29,8 @@ public:
     static tl::expected<FaultMonitor, std::string> make(std::unique_ptr<Detector> detector, const VerdictSettings& verdict,
                                                         const geometry::SensorCluster& cluster);
 
-    /// The same for channels that are no directions in space (VESSEL_RATES): each may be the last one left.
-    /// @returns also that readmission by itself is asked for, which needs directions.
+    /// The same for channels that are no directions in space (VESSEL_RATES): each may be the last one left, and the detector's own model
+    /// tells when one may come back (ObserverReadmission).
     static tl::expected<FaultMonitor, std::string> make(std::unique_ptr<Detector> detector, const VerdictSettings& verdict,
                                                         std::size_t channels);
 
@@ -56,6 +57,8 @@ private:
     VerdictMachine machine_;
     std::optional<AxisHealth> health_;
     std::optional<Readmission> readmission_;
+    std::optional<ObserverReadmission> observer_readmission_;
+    AxisMask returning_ = 0;  ///< from the next frame on
     AxisMask all_;
     bool started_ = false;
     Assessment assessment_;

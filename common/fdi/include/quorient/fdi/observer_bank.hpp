@@ -66,8 +66,9 @@ public:
     const Eigen::MatrixXd& gain(std::size_t observer) const { return observers_[observer].gain; }
     Poles poles(std::size_t observer) const;
 
-    /// All observers start from the state that the samples tell (least squares), or 0 where they do not.
-    void start(const Outputs& samples);
+    /// All observers start from the state that the valid samples tell (least squares), or 0 where they do not.
+    /// @returns the frames until a wrong start has decayed to 1/1000 in all observers; 0 where the samples tell the whole state.
+    std::uint64_t start(const Outputs& samples, AxisMask valid);
 
     /// Compares the samples with what was expected of them. Channels that are not `valid` have residual 0.
     void compare(const Outputs& samples, AxisMask valid);
@@ -85,9 +86,6 @@ public:
     /// Directional scheme: frames after the onset of a constant fault during which the metrics may still name the wrong channel
     /// (at first every observer sees the bare fault; the directions form with the observers' poles), times 1.5. Blind scheme: 0.
     std::uint64_t attribution_frames() const { return attribution_frames_; }
-
-    /// Frames until a wrong start has decayed to 1/1000 in all observers; 0 where the samples tell the whole state.
-    std::uint64_t settling_frames() const { return settling_frames_; }
 
 private:
     static constexpr int max_parameters = max_states * (max_states + max_inputs) + 1;
@@ -141,8 +139,9 @@ private:
     double model_error_;
     std::optional<double> threshold_;
     double z_ = 0;
-    Outputs variance_;  ///< of one sample's noise
-    std::uint64_t settling_frames_ = 0;
+    Outputs variance_;                   ///< of one sample's noise
+    std::uint64_t settling_frames_ = 0;  ///< from a start that is wrong to 1/1000 of it, in all observers
+    bool state_is_measured_ = false;     ///< the samples of all channels tell the whole state
     std::uint64_t attribution_frames_ = 0;
     SmallMatrix from_samples_;  ///< pseudo-inverse of C
     std::vector<Parameter> parameters_;

@@ -20,7 +20,12 @@ namespace quorient::fdi {
 /// one is: isolated. Several: ambiguous. None: a pair, where an observer without it explains the rest; else blind.
 ///
 /// An input that is not finite (a rudder stream that stopped) makes the verdict `blind`: without it nothing can be expected. When it comes
-/// back, and after a gap of more than 20 frames, the observers start again.
+/// back, and after a gap of more than 20 frames, the observers start again; they warm up where the channels that are trusted and valid do
+/// not tell the whole state.
+///
+/// An excluded channel would be a healthy one again (expectation) where nothing that the observers see contradicts the trusted channels and
+/// it. Directional: all metrics are below their limits; the value expected is then the observer's own, which the fault moves as long as it
+/// lasts. Blind: the value expected comes from the other channels alone, where two or more are trusted or the channel left is.
 class ObserverDetector final : public Detector {
 public:
     static tl::expected<std::unique_ptr<ObserverDetector>, std::string> make(const ObserverSettings& settings, double interval_s,
@@ -29,6 +34,8 @@ public:
     void assess(const Measurement& measurement, Assessment& assessment) override;
     void exclude(AxisMask excluded) override { excluded_ = excluded; }
     unsigned detectable_remaining() const override;
+    std::optional<Expectation> expectation(std::size_t channel) const override;
+    std::string_view reason() const override;
     void reset() override { last_.reset(); }
 
     const ObserverBank& bank() const { return bank_; }
@@ -43,6 +50,8 @@ private:
     void judge_directional(Assessment& assessment);
     void judge_blind(Assessment& assessment) const;
     void judge_last(AxisMask working, Assessment& assessment) const;
+    bool settled() const { return last_ && frames_ > settling_frames_; }
+    bool agrees_with(AxisMask trusted, AxisMask excluded) const;
     double worst(std::size_t observer, AxisMask channels) const;
     void report(std::size_t observer, double interval_s, Assessment& assessment) const;
     AxisMask working() const { return all_axes(bank_.channels()) & ~excluded_; }
@@ -52,8 +61,10 @@ private:
     double margin_;
     AxisMask excluded_ = 0;
     std::optional<Identity> last_;
-    std::uint64_t frames_ = 0;        ///< since the observers started
-    std::uint64_t alarm_frames_ = 0;  ///< directional: up with every alarm, down with every frame without
+    AxisMask valid_ = 0;                 ///< of the newest frame
+    std::uint64_t frames_ = 0;           ///< since the observers started
+    std::uint64_t settling_frames_ = 0;  ///< of them, those that tell nothing yet
+    std::uint64_t alarm_frames_ = 0;     ///< directional: up with every alarm, down with every frame without
     ObserverBank::Outputs samples_;
     ObserverBank::Inputs input_;
 };

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -43,8 +44,11 @@ std::vector<FaultSpec> paper_faults();
 
 struct VesselScenario {
     VesselModel model;
-    double rudder_rad = 0.01;  ///< amplitude of a sine
+    std::vector<std::string> channels;  ///< their names; empty: channel0, channel1, ...
+    double rudder_rad = 0.01;           ///< amplitude of a sine
     double rudder_period_s = 20;
+    double rudder_lost_from_s = std::numeric_limits<double>::infinity();  ///< the rudder moves on, and nobody tells where it is,
+    double rudder_lost_to_s = std::numeric_limits<double>::infinity();    ///< until then
     double interval_s = 0.01;
     double duration_s = 80;
     double noise = 0;  ///< standard deviation of every sample, in the channel's unit
@@ -52,11 +56,15 @@ struct VesselScenario {
     std::vector<FaultSpec> faults;  ///< axis = channel (0 sway velocity, 1 yaw rate); the times of samples count
 };
 
+/// The channels as a description names them and as faults act on them: each its own instrument, no directions.
+geometry::SensorCluster channels_of(const VesselScenario& scenario);
+
 /// @returns what is wrong: sizes, figures, a fault on a channel that is not there.
 tl::expected<void, std::string> check(const VesselScenario& scenario);
 
 /// The vessel and its sensors, one frame per interval. Frame k is sampled at time k h, and holds sample times interval as increments
-/// (so that a mean rate is what they say), the rudder as known input. The rudder is held over an interval; the motion is exact.
+/// (so that a mean rate is what they say), the rudder as known input (NaN while it is lost). The rudder is held over an interval; the
+/// motion is exact.
 class SimulatedVessel {
 public:
     /// @param scenario  has passed check().
@@ -66,11 +74,21 @@ public:
     bool next(SensorFrame& frame, Eigen::VectorXd& state);
 
     double time_s() const { return static_cast<double>(sequence_) * scenario_.interval_s; }
+    std::uint64_t frame_count() const { return frames_; }
+
+    /// The channels that a fault really touched in the newest frame.
+    AxisMask faulty() const { return faulty_; }
+
+    FaultInjector& faults() { return faults_; }
 
 private:
+    double rudder_at(double time) const;
+
     VesselScenario scenario_;
     geometry::ZeroOrderHold hold_;
     FaultInjector faults_;
+    FrameAccumulator accumulator_;
+    AxisMask faulty_ = 0;
     Eigen::VectorXd state_;
     std::uint64_t sequence_ = 0;
     std::uint64_t frames_;
