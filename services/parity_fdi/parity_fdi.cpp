@@ -1,6 +1,8 @@
 #include "parity_fdi.hpp"
 
+#include "quorient/fdi/observer_detector.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"
+#include "quorient/runtime/describe.hpp"
 #include "quorient/runtime/intake_report.hpp"
 #include "quorient/runtime/text.hpp"
 #include "quorient/runtime/words.hpp"
@@ -39,7 +41,8 @@ ParityFdi::ParityFdi(const system::DetectorProcess& settings, bus::Bus& bus, run
 
 void ParityFdi::look_at_readiness()
 {
-    if (node_.state() == ServiceState::starting && intake_.described() && frames_->status().matched > 0 && verdicts_.status().matched > 0)
+    const bool is_heard = verdicts_.status().matched > 0 || settings_.observers;  // by its integrator, which a vessel has not
+    if (node_.state() == ServiceState::starting && intake_.described() && frames_->status().matched > 0 && is_heard)
         node_.set_state(ServiceState::ready);
 }
 
@@ -59,12 +62,28 @@ void ParityFdi::handle_accepted()
     }
 }
 
+tl::expected<fdi::FaultMonitor, std::string> ParityFdi::make_method(const ClusterDescription& description) const
+{
+    const auto cluster = geometry::make_cluster(description);
+    if (!cluster) return tl::make_unexpected(cluster.error());
+    return fdi::FaultMonitor::make(settings_.detection, settings_.verdict, *cluster);
+}
+
+tl::expected<fdi::FaultMonitor, std::string> ParityFdi::make_observers(const ClusterDescription& description) const
+{
+    const auto channels = static_cast<std::size_t>(settings_.observers->plant.outputs());
+    if (description.axis_count != channels)
+        return tl::make_unexpected(
+            fmt::format("the description has {} channels, the plant of the system file {}", description.axis_count, channels));
+    auto observers = fdi::ObserverDetector::make(*settings_.observers, description.interval_s, settings_.observer_margin);
+    if (!observers) return tl::make_unexpected(observers.error());
+    return fdi::FaultMonitor::make(std::move(*observers), settings_.verdict, channels);
+}
+
 /// A new description makes a new detector; what was isolated stays so.
 bool ParityFdi::prepare(const ClusterDescription& description)
 {
-    auto cluster = geometry::make_cluster(description);
-    auto made = cluster ? fdi::FaultMonitor::make(settings_.detection, settings_.verdict, *cluster)
-                        : tl::expected<fdi::FaultMonitor, std::string>{tl::make_unexpected(cluster.error())};
+    auto made = settings_.observers ? make_observers(description) : make_method(description);
     if (!made) {
         node_.report(EventCode::rejected_input, Severity::fatal, {description.epoch, 0}, 0, made.error());
         node_.loop().quit(2);
@@ -98,6 +117,11 @@ void ParityFdi::assess(const SensorFrame& frame)
     last_ = verdict;
 }
 
+std::string ParityFdi::describe(AxisMask axes) const
+{
+    return intake_.description() ? runtime::describe_axes(axes, *intake_.description()) : runtime::describe_axes(axes);
+}
+
 void ParityFdi::tell_changes(const FaultVerdict& verdict)
 {
     const auto identity = identity_of(verdict);
@@ -109,30 +133,35 @@ void ParityFdi::tell_changes(const FaultVerdict& verdict)
         }
         node_.report(verdict.adopted ? EventCode::adopted : EventCode::isolated, Severity::warning_high, identity, newly_isolated,
                      fmt::format("{} {} since frame {}: statistic {:.4g}, limit {:.4g}", verdict.adopted ? "ADOPTED" : "ISOLATED",
-                                 runtime::describe_axes(newly_isolated), onset, verdict.statistic, verdict.threshold));
+                                 describe(newly_isolated), onset, verdict.statistic, verdict.threshold));
         if (verdict.detectable_remaining == 0)
             node_.report(EventCode::redundancy_exhausted, Severity::warning_high, identity, verdict.working_mask,
                          "redundancy is used up: a further fault cannot be told");
     }
     const auto readmitted = last_.isolated_mask & ~verdict.isolated_mask;
     if (readmitted != 0)
-        node_.report(EventCode::readmitted, Severity::info, identity, readmitted,
-                     fmt::format("READMITTED {}", runtime::describe_axes(readmitted)));
+        node_.report(EventCode::readmitted, Severity::info, identity, readmitted, fmt::format("READMITTED {}", describe(readmitted)));
     if (verdict.state == last_.state || newly_isolated != 0) return;
+    const auto reason = monitor_->detector().reason();
     switch (static_cast<VerdictState>(verdict.state)) {
         case VerdictState::ambiguous:
-            node_.report_throttled(EventCode::ambiguous, Severity::warning_high, identity, verdict.suspect_mask,
-                                   fmt::format("AMBIGUOUS: {} candidate sets, one of {} is faulty", verdict.candidate_count,
-                                               runtime::describe_axes(verdict.suspect_mask)));
+            node_.report_throttled(
+                EventCode::ambiguous, Severity::warning_high, identity, verdict.suspect_mask,
+                fmt::format("AMBIGUOUS: {} candidate sets, one of {} is faulty", verdict.candidate_count, describe(verdict.suspect_mask)));
             break;
         case VerdictState::blind:
             node_.report_throttled(EventCode::blind, Severity::warning_high, identity, 0,
-                                   "BLIND: no set of faults within reach explains the data");
+                                   fmt::format("BLIND: {}", reason.empty() ? "no set of faults within reach explains the data" : reason));
             break;
         case VerdictState::suspect:
             node_.report_throttled(EventCode::suspect, Severity::warning_low, identity, verdict.suspect_mask,
-                                   fmt::format("SUSPECT {}: statistic {:.4g}, limit {:.4g}", runtime::describe_axes(verdict.suspect_mask),
-                                               verdict.statistic, verdict.threshold));
+                                   !reason.empty() ? fmt::format("SUSPECT: {}", reason)
+                                                   : fmt::format("SUSPECT {}: statistic {:.4g}, limit {:.4g}",
+                                                                 describe(verdict.suspect_mask), verdict.statistic, verdict.threshold));
+            break;
+        case VerdictState::warming_up:
+            if (!reason.empty())
+                node_.report_throttled(EventCode::blind, Severity::info, identity, 0, fmt::format("WARMING_UP: {}", reason));
             break;
         default:
             break;

@@ -28,7 +28,10 @@ private:
     void on_command(const FaultCommand& command);
     void handle_accepted();
     bool prepare(const ClusterDescription& description);
+    tl::expected<fdi::FaultMonitor, std::string> make_method(const ClusterDescription& description) const;
+    tl::expected<fdi::FaultMonitor, std::string> make_observers(const ClusterDescription& description) const;
     void assess(const SensorFrame& frame);
+    std::string describe(AxisMask axes) const;
     void tell_changes(const FaultVerdict& verdict);
     void remember(std::uint64_t epoch, const std::array<std::uint64_t, max_axes>& excluded_from, Memory& memory);
     void adopt_memories();

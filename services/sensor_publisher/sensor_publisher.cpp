@@ -59,7 +59,9 @@ void SensorPublisher::start()
         node_.report(EventCode::consumers_missing, Severity::warning_high, {source_->description().epoch, 0}, 0,
                      fmt::format("starts after {} s without {}", settings_.wait_s, fmt::join(missing_, ", ")));
     node_.report(EventCode::started, Severity::info, {source_->description().epoch, 0}, 0,
-                 fmt::format("{} axes at {:.4g} Hz", source_->description().axis_count, 1 / source_->description().interval_s));
+                 fmt::format("{} {} at {:.4g} Hz", source_->description().axis_count,
+                             source_->description().kind == static_cast<std::uint8_t>(SensorKind::vessel_rates) ? "channels" : "axes",
+                             1 / source_->description().interval_s));
     node_.set_state(ServiceState::running);
     start_ns_ = node_.clock().steady_ns();
     frame_timer_.set(due_ns(0));

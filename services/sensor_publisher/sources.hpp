@@ -7,6 +7,8 @@ namespace quorient::sensor {
 /// @param settings  checked by the system file's loader.
 std::unique_ptr<FrameSource> make_simulation_source(const system::SensorSettings& settings, std::uint64_t epoch);
 
+std::unique_ptr<FrameSource> make_vessel_source(const system::SensorSettings& settings, std::uint64_t epoch);
+
 tl::expected<std::unique_ptr<FrameSource>, std::string> make_log_source(const system::SensorSettings& settings, std::uint64_t epoch);
 
 }  // namespace quorient::sensor

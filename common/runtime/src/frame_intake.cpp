@@ -17,7 +17,10 @@ constexpr double range_tolerance = 1.0 + 1e-9;
 
 const char* FrameIntake::problem_of(const ClusterDescription& description)
 {
-    if (description.axis_count < 3 || description.axis_count > max_axes) return "it must have 3 to 24 axes";
+    // Directions in space take three to measure a rotation; a vessel's channels need no directions.
+    const bool channels = description.kind == static_cast<std::uint8_t>(SensorKind::vessel_rates);
+    if (description.axis_count < (channels ? 1 : 3) || description.axis_count > max_axes)
+        return channels ? "it must have 1 to 24 channels" : "it must have 3 to 24 axes";
     if (!(description.interval_s > 0) || !std::isfinite(description.interval_s)) return "its interval must be above 0 s";
     return nullptr;
 }

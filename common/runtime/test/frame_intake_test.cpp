@@ -65,6 +65,17 @@ TEST_F(Intake, passes_what_is_new_and_in_order)
     EXPECT_EQ(intake.counters().duplicates, 0U);
 }
 
+TEST_F(Intake, takes_two_channels_of_a_vessel_and_refuses_two_axes_in_space)
+{
+    ClusterDescription two = description(1);
+    two.axis_count = 2;
+    EXPECT_NE(FrameIntake::problem_of(two), nullptr);
+    two.kind = static_cast<std::uint8_t>(SensorKind::vessel_rates);
+    EXPECT_EQ(FrameIntake::problem_of(two), nullptr);
+    two.axis_count = 0;
+    EXPECT_NE(FrameIntake::problem_of(two), nullptr);
+}
+
 TEST_F(Intake, counts_duplicates_late_frames_and_gaps)
 {
     EXPECT_TRUE(passes(frame(1, 0)));

@@ -1,10 +1,9 @@
 #include "parse_bus.hpp"
+#include "parse_detector.hpp"
 #include "parse_source.hpp"
-#include "quorient/fdi/make_detector.hpp"
 #include "quorient/system/system.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <algorithm>
 #include <set>
 
@@ -39,36 +38,6 @@ bool runs_here(const Overrides& overrides, const ProcessSettings& process)
     return overrides.process.empty() || overrides.process == process.node.name;
 }
 
-void parse_detection(Section section, DetectorProcess& detector)
-{
-    auto& detection = detector.detection;
-    section.text("method", detection.method);
-    section.number("tolerance", detection.tolerance, runtime::above_zero);
-    section.number("sigma", detection.sigma, runtime::above_zero);
-    section.number("pfa", detection.pfa, runtime::probability);
-    section.number("bound", detection.bound, runtime::above_zero);
-    section.number("threshold", detection.threshold, runtime::above_zero);
-    section.whole("max_faults", detection.max_faults);
-    section.number("margin", detection.margin, runtime::not_negative);
-    section.number("doubt", detection.doubt, {.lowest = 0, .highest = 1});
-    section.boolean("instruments", detection.instruments);
-    section.boolean("relaxed", detection.relaxed);
-    section.whole("confirm_required", detector.verdict.confirm_required, 1, 32);
-    section.whole("confirm_window", detector.verdict.confirm_window, 1, 32);
-    section.whole("warm_up_frames", detector.verdict.warm_up_frames, 0, 100'000);
-    section.whole("onset_guard_frames", detector.verdict.onset_guard_frames, 0, 1000);
-    section.number("readmit_after_s", detector.verdict.readmit_after_s, runtime::above_zero);
-    if (detector.verdict.confirm_required > detector.verdict.confirm_window)
-        section.problem("confirm_required", "cannot be more than confirm_window");
-    const auto& methods = fdi::methods();
-    if (std::none_of(methods.begin(), methods.end(), [&](const auto& entry) { return entry.name == detection.method; })) {
-        std::vector<std::string_view> names;
-        for (const auto& entry : methods) names.push_back(entry.name);
-        section.problem("method", fmt::format("unknown method '{}'; known are {}", detection.method, fmt::join(names, ", ")));
-    }
-    section.finish();
-}
-
 void parse_integration(Section section, IntegratorProcess& integrator)
 {
     section.text("algorithm", integrator.integration.algorithm);
@@ -80,11 +49,15 @@ void parse_integration(Section section, IntegratorProcess& integrator)
     section.finish();
 }
 
-/// A detector that this cluster cannot have is a mistake of the file, told before anything starts.
-void try_detector(Section& lane, const System& system, const DetectorProcess& detector)
+void parse_integrator(Section& lane, const System& system, const ProcessSettings& own, LaneProcess& result, std::uint32_t place)
 {
-    if (!system.sensor.cluster) return;
-    if (const auto made = fdi::make_detector(detector.detection, *system.sensor.cluster); !made) lane.problem("detector", made.error());
+    auto& integrator = result.integrator;
+    integrator.process = process_of(system, own, "attitude-" + result.name, first_integrator_service + place, ServiceRole::integrator);
+    integrator.detector = result.detector.detector;
+    integrator.kind = system.sensor.kind;
+    integrator.integration.unit = system.unit;
+    integrator.integration.lane = place + 1;
+    parse_integration(lane.section("integrator"), integrator);
 }
 
 void parse_lane(Section lane, const System& system, const ProcessSettings& base, const Overrides& overrides, LaneProcess& result,
@@ -100,17 +73,11 @@ void parse_lane(Section lane, const System& system, const ProcessSettings& base,
     detector.process = process_of(system, own, "fdi-" + result.name, first_detector_service + place, ServiceRole::detector);
     detector.lane = detector.detector = place + 1;
     detector.kind = system.sensor.kind;
-    parse_detection(lane.section("detector"), detector);
-    try_detector(lane, system, detector);
-
-    auto& integrator = result.integrator;
-    integrator.process = process_of(system, own, "attitude-" + result.name, first_integrator_service + place, ServiceRole::integrator);
-    integrator.detector = detector.detector;
-    integrator.kind = system.sensor.kind;
-    integrator.integration.unit = system.unit;
-    integrator.integration.lane = place + 1;
-    parse_integration(lane.section("integrator"), integrator);
-    if (runs_here(overrides, detector.process) || runs_here(overrides, integrator.process)) check_bus(lane, own);
+    parse_detector(lane, system, detector);
+    if (system.has_attitude()) parse_integrator(lane, system, own, result, place);
+    else if (lane.has("integrator")) lane.problem("integrator", "a vessel's rates give no attitude: there is nothing to integrate");
+    if (runs_here(overrides, detector.process) || (system.has_attitude() && runs_here(overrides, result.integrator.process)))
+        check_bus(lane, own);
     lane.finish();
 }
 
@@ -144,6 +111,11 @@ void parse_voting(Section section, voting::VoterSettings& voting)
 
 void parse_voters(Section& root, System& system, const ProcessSettings& base, const Overrides& overrides)
 {
+    if (!system.has_attitude()) {
+        for (const char* key : {"voters", "voting"})
+            if (root.has(key)) root.problem(key, "a vessel's rates give no attitude: there is nothing to vote on");
+        return;
+    }
     voting::VoterSettings voting;
     voting.unit = system.unit;
     voting.interval_s = system.interval_s;
@@ -185,6 +157,7 @@ void parse_expectations(Section section, Expectations& expect)
     section.whole("within_frames", expect.within_frames);
     section.number("final_error_rad", expect.final_error_rad, runtime::above_zero);
     section.boolean("no_gap", expect.no_gap);
+    section.number("each_fault_within_s", expect.each_fault_within_s, runtime::above_zero);
     section.finish();
 }
 
@@ -203,7 +176,7 @@ void list_consumers(System& system)
     auto& consumers = system.sensor.consumers;
     for (const auto& lane : system.lanes) {
         consumers.push_back(lane.detector.process.node.name);
-        consumers.push_back(lane.integrator.process.node.name);
+        if (system.has_attitude()) consumers.push_back(lane.integrator.process.node.name);
     }
     for (const auto& voter : system.voters) consumers.push_back(voter.process.node.name);
 }
@@ -235,6 +208,8 @@ tl::expected<System, std::string> load(const std::string& file, const Overrides&
     parse_lanes(root, system, base, overrides);
     parse_voters(root, system, base, overrides);
     parse_expectations(root.section("expect"), system.expectations);
+    if (!system.has_attitude() && (system.expectations.no_gap || system.expectations.final_error_rad))
+        root.problem("expect", "a vessel's rates give no attitude: no_gap and final_error_rad cannot be met");
     list_consumers(system);
     system.monitor = process_of(system, base, "monitor", monitor_service, ServiceRole::monitor);
     system.monitor.bus.transport = Transport::udp;

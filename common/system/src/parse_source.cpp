@@ -1,5 +1,6 @@
 #include "parse_source.hpp"
 
+#include "parse_vessel.hpp"
 #include "quorient/attitude/levelling.hpp"
 #include "quorient/geometry/layouts.hpp"
 #include "quorient/runtime/text.hpp"
@@ -187,6 +188,10 @@ void parse_unit(Section unit, System& system)
     if (kinds.contains(kind)) system.sensor.kind = kinds.at(kind);
     else unit.problem("kind", fmt::format("unknown kind '{}'; known are gyro, accelerometer and vessel_rates", kind));
 
+    if (!system.has_attitude()) {
+        parse_vessel_unit(unit, system);
+        return unit.finish();
+    }
     if (unit.has("layout") || unit.has("axes")) {
         const char* key = "layout";
         auto cluster = parse_cluster(unit, key);
@@ -203,6 +208,7 @@ void parse_unit(Section unit, System& system)
 
 void parse_source(Section source, System& system)
 {
+    if (!system.has_attitude()) return parse_vessel_source(source, system);
     std::string kind = "simulation";
     source.text("kind", kind);
     source.whole("seed", system.sensor.source.scenario.seed);

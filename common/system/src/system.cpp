@@ -29,6 +29,7 @@ tl::expected<DetectorProcess, std::string> System::detector(std::string_view pro
 
 tl::expected<IntegratorProcess, std::string> System::integrator(std::string_view process) const
 {
+    if (!has_attitude()) return tl::make_unexpected(fmt::format("{}: a vessel's rates give no attitude: there are no integrators", file));
     return find(*this, lanes, process, [](const LaneProcess& lane) -> const IntegratorProcess& { return lane.integrator; });
 }
 

@@ -55,9 +55,10 @@ void Screen::draw(const Processes& processes)
                             lane.errors.compared ? fmt::format("{:.2e}", lane.errors.final_rad) : "-", restarts);
     }
     const auto& voted = run_.voted();
-    text += fmt::format("{:<6}{:<12}{:<13}{:<18}{:<14}\n", "voted", "", runtime::to_string(static_cast<VoteLevel>(voted.latest.level)), "",
-                        voted.errors.compared ? fmt::format("{:.2e}", voted.errors.final_rad) : "-");
-    int lines = 3 + static_cast<int>(run_.lanes().size());
+    if (system_.has_attitude())
+        text += fmt::format("{:<6}{:<12}{:<13}{:<18}{:<14}\n", "voted", "", runtime::to_string(static_cast<VoteLevel>(voted.latest.level)),
+                            "", voted.errors.compared ? fmt::format("{:.2e}", voted.errors.final_rad) : "-");
+    int lines = (system_.has_attitude() ? 3 : 2) + static_cast<int>(run_.lanes().size());
     for (const auto& line : latest_) {
         text += line.substr(0, 120) + "\n";
         ++lines;

@@ -35,8 +35,10 @@ Offline::Offline(system::System system, RunObserver& observer, ReplayReport& rep
 {
     observe(observer, report);
     for (const auto& voter : system_.voters) voters_.push_back(std::make_unique<voter::VoterService>(voter, *bus_, loop_));
-    for (const auto& lane : system_.lanes)
+    for (const auto& lane : system_.lanes) {
+        if (!system_.has_attitude()) break;
         integrators_.push_back(std::make_unique<integrator::AttitudeIntegrator>(lane.integrator, *bus_, loop_));
+    }
     for (const auto& lane : system_.lanes) detectors_.push_back(std::make_unique<detector::ParityFdi>(lane.detector, *bus_, loop_));
 }
 

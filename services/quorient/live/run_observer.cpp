@@ -50,7 +50,8 @@ LaneRecord* RunObserver::lane_of_detector(std::uint32_t detector)
 
 double RunObserver::time_s(Identity identity) const
 {
-    return static_cast<double>(identity.sequence + 1) * (description_ ? description_->interval_s : system_.interval_s);
+    const std::uint64_t after = system_.has_attitude() ? 1 : 0;  // increments end with their frame, a vessel's samples begin it
+    return static_cast<double>(identity.sequence + after) * (description_ ? description_->interval_s : system_.interval_s);
 }
 
 void RunObserver::on_description(const ClusterDescription& description)
@@ -91,6 +92,7 @@ void RunObserver::on_truth(const TruthState& truth)
     if (truth.faulty_mask != 0) fault_ended_.reset();
     else if (fault_began_ && !fault_ended_) fault_ended_ = newest_truth_;
     faulty_ |= truth.faulty_mask;
+    faults_.update(truth.faulty_mask, static_cast<double>(truth.sample_time_ns) * 1e-9);
     compare_waiting();
 }
 
@@ -101,6 +103,11 @@ void RunObserver::on_verdict(const FaultVerdict& verdict)
     if (shadow_ && lane == &lanes_.front()) shadow_->apply(verdict);
     lane->verdict = verdict;
     lane->isolated_ever |= verdict.isolated_mask;
+    lane->isolated.update(verdict.isolated_mask, static_cast<double>(verdict.sample_time_ns) * 1e-9);
+    ++lane->verdicts;
+    const auto state = static_cast<VerdictState>(verdict.state);
+    const bool suspicious = state == VerdictState::suspect || state == VerdictState::ambiguous || state == VerdictState::blind;
+    lane->suspicious += suspicious ? 1 : 0;
     if (verdict.isolated_mask == 0 || lane->isolated_at) return;
     lane->isolated_at = identity_of(verdict);
     lane->isolated_first = verdict.isolated_mask;

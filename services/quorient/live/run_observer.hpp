@@ -1,5 +1,6 @@
 #pragma once
 
+#include "fault_spells.hpp"
 #include "quorient/attitude/integrator.hpp"
 #include "quorient/messages/attitude_state.hpp"
 #include "quorient/messages/cluster_description.hpp"
@@ -39,6 +40,9 @@ struct LaneRecord {
     AxisMask isolated_first = 0;
     AxisMask isolated_ever = 0;
     AxisMask triad_after = 0;  ///< axes in use after the first isolation
+    std::uint64_t verdicts = 0;
+    std::uint64_t suspicious = 0;  ///< verdicts that were SUSPECT, AMBIGUOUS or BLIND
+    Spells isolated;
     std::uint64_t frames = 0;
     std::uint64_t largest_roll_back = 0;
     Errors errors;
@@ -76,6 +80,7 @@ public:
     std::optional<Identity> fault_began() const { return fault_began_; }
     std::optional<Identity> fault_ended() const { return fault_ended_; }
     AxisMask faulty() const { return faulty_; }
+    const Spells& faults() const { return faults_; }
     std::uint64_t truth_frames() const { return truth_frames_; }
     Identity newest_truth() const { return newest_truth_; }
     const std::optional<ClusterDescription>& description() const { return description_; }
@@ -88,6 +93,9 @@ public:
     std::uint64_t missing_voted() const;
 
 private:
+    /// A fault may touch no value in a frame (a scale fault of a value that passes 0) and still last.
+    static constexpr double longest_pause_s = 0.2;
+
     /// An attitude whose truth has not arrived yet.
     struct Waiting {
         Identity identity;
@@ -114,6 +122,7 @@ private:
     std::optional<Identity> fault_began_;
     std::optional<Identity> fault_ended_;
     AxisMask faulty_ = 0;
+    Spells faults_{longest_pause_s};
     std::uint64_t truth_frames_ = 0;
     Identity newest_truth_;
 };

@@ -4,6 +4,7 @@
 #include "quorient/bus/settings.hpp"
 #include "quorient/runtime/text.hpp"
 #include "quorient/runtime/words.hpp"
+#include "vessel_summary.hpp"
 
 #include <fmt/format.h>
 #include <bit>
@@ -58,6 +59,7 @@ nlohmann::ordered_json errors_json(const Errors& errors)
 
 std::string summary_text(const system::System& system, const RunObserver& run)
 {
+    if (!system.has_attitude()) return vessel_text(system, run);
     std::string text = fmt::format("{}: {} frames\n", system.name, run.truth_frames());
     if (run.fault_began())
         text += fmt::format("fault    {} from {:.3f} s{}\n", runtime::describe_axes(run.faulty()), run.time_s(*run.fault_began()),
@@ -80,6 +82,11 @@ std::string summary_text(const system::System& system, const RunObserver& run)
 nlohmann::ordered_json summary_json(const system::System& system, const RunObserver& run)
 {
     nlohmann::ordered_json json;
+    if (!system.has_attitude()) {
+        json = vessel_json(system, run);
+        json["unmet"] = unmet(system, run);
+        return json;
+    }
     json["system"] = system.name;
     json["frames"] = run.truth_frames();
     json["fault"] = nullptr;
@@ -109,7 +116,7 @@ nlohmann::ordered_json summary_json(const system::System& system, const RunObser
 std::vector<std::string> unmet(const system::System& system, const RunObserver& run)
 {
     const auto& expect = system.expectations;
-    std::vector<std::string> failures;
+    std::vector<std::string> failures = unmet_faults(system, run);
     if (!expect.any()) return failures;
     if ((expect.within_frames || (expect.isolated && *expect.isolated != 0)) && !run.fault_began())
         failures.emplace_back("the fault never took effect");

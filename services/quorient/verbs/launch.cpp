@@ -63,7 +63,7 @@ void add_processes(const system::System& system, const SystemOptions& options, l
     };
     for (const auto& voter : system.voters) add("quorient-voter", voter.process.node.name);
     for (const auto& lane : system.lanes) {
-        add("quorient-attitude", lane.integrator.process.node.name);
+        if (system.has_attitude()) add("quorient-attitude", lane.integrator.process.node.name);
         add("quorient-fdi", lane.detector.process.node.name);
     }
     add("quorient-sensor", system.sensor.process.node.name);

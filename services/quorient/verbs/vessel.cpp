@@ -1,60 +1,16 @@
 #include "failure.hpp"
 #include "json_output.hpp"
-#include "quorient/fdi/observer_detector.hpp"
-#include "svg_plot.hpp"
 #include "verbs.hpp"
-#include "vessel_input.hpp"
+#include "vessel_plot.hpp"
+#include "vessel_run.hpp"
+#include "vessel_table.hpp"
 
 #include <fmt/format.h>
-#include <bit>
-#include <cmath>
 #include <iostream>
 #include <memory>
 
 namespace quorient::cli {
 namespace {
-
-struct VesselOptions {
-    std::string file;
-    std::string scheme;
-    std::vector<std::string> faults;
-    double interval_s = 0.01;
-    double duration_s = 80;
-    double noise = 0;
-    std::uint64_t seed = 1;
-    std::string plot_file;
-    bool gains = false;
-    bool json = false;
-};
-
-/// One sample of the run.
-struct Row {
-    double time_s = 0;
-    double rudder_rad = 0;
-    Eigen::VectorXd state;
-    std::vector<Eigen::VectorXd> residual;  ///< of each channel's observer
-    std::vector<double> metric;             ///< likewise
-    fdi::Assessment assessment;
-};
-
-simulation::VesselScenario scenario_of(const VesselOptions& options, const VesselInput& input)
-{
-    simulation::VesselScenario scenario;
-    scenario.model = input.model;
-    scenario.interval_s = options.interval_s;
-    scenario.duration_s = options.duration_s;
-    scenario.noise = options.noise;
-    scenario.seed = options.seed;
-    if (options.faults.empty()) scenario.faults = simulation::paper_faults();
-    for (const std::string& text : options.faults) {
-        if (text == "none") continue;
-        const auto fault = simulation::parse_fault(text);
-        if (!fault) fail(fmt::format("--fault: {}", fault.error()));
-        scenario.faults.push_back(*fault);
-    }
-    if (const auto checked = simulation::check(scenario); !checked) fail(checked.error());
-    return scenario;
-}
 
 std::string decision(const fdi::Assessment& assessment)
 {
@@ -77,45 +33,6 @@ std::string decision(const fdi::Assessment& assessment)
     return "";
 }
 
-/// Directional: C_i of eq (25). Blind: the largest residual of the channels that the observer does use.
-double metric_of(const fdi::ObserverBank& bank, std::size_t channel)
-{
-    if (bank.scheme() == fdi::ObserverScheme::directional) return bank.metric(channel);
-    double largest = 0;
-    for (std::size_t other = 0; other < bank.channels(); ++other) {
-        if (other != channel) largest = std::max(largest, std::abs(bank.residual(channel)(static_cast<Eigen::Index>(other))));
-    }
-    return largest;
-}
-
-template <class See>
-void play(const VesselOptions& options, const VesselInput& input, fdi::ObserverScheme scheme, See&& see)
-{
-    simulation::SimulatedVessel vessel(scenario_of(options, input));
-    const auto detector = fdi::ObserverDetector::make(input.observers(scheme), options.interval_s);
-    if (!detector) fail(detector.error());
-    const fdi::ObserverBank& bank = (*detector)->bank();
-    SensorFrame frame;
-    Row row;
-    row.residual.resize(bank.channels());
-    row.metric.resize(bank.channels());
-    while (vessel.next(frame, row.state)) {
-        row.time_s = static_cast<double>(frame.sequence) * options.interval_s;
-        row.rudder_rad = frame.known_input[0];
-        (*detector)->assess({.identity = {0, frame.sequence},
-                             .interval_s = frame.interval_s,
-                             .increment = std::span(frame.increment).first(bank.channels()),
-                             .valid = frame.valid_mask,
-                             .known_input = frame.known_input},
-                            row.assessment);
-        for (std::size_t channel = 0; channel < bank.channels(); ++channel) {
-            row.residual[channel] = bank.residual(channel);
-            row.metric[channel] = metric_of(bank, channel);
-        }
-        if (!see(row)) return;
-    }
-}
-
 void print_header(std::size_t states, std::size_t channels)
 {
     fmt::print("time,rudder");
@@ -127,7 +44,7 @@ void print_header(std::size_t states, std::size_t channels)
     fmt::print(",decision,channels\n");
 }
 
-void print_csv(const Row& row)
+void print_csv(const VesselRow& row)
 {
     fmt::print("{:.17g},{:.17g}", row.time_s, row.rudder_rad);
     for (const double value : row.state) fmt::print(",{:.17g}", value);
@@ -142,7 +59,7 @@ void print_csv(const Row& row)
     fmt::print("\n");
 }
 
-Json json_of(const Row& row)
+Json json_of(const VesselRow& row)
 {
     Json residuals = Json::array();
     for (const auto& residual : row.residual) residuals.push_back(vector_json(residual));
@@ -184,55 +101,18 @@ void print_gains(const VesselOptions& options, const VesselInput& input)
     fmt::print("{}\n", dump(document));
 }
 
-/// As the paper's figures 4 to 6: the motion, the two metrics, and what was decided.
-class Plot {
-public:
-    Plot(const std::string& scheme, std::size_t states, std::size_t channels)
-    {
-        label(motion_, "the vessel", "state");
-        label(metrics_, "metrics of the " + scheme + " scheme", "metric");
-        label(decisions_, "isolated", "channel");
-        for (std::size_t k = 0; k < states; ++k) motion_.series.push_back({fmt::format("state {}", k), {}, colour(k)});
-        for (std::size_t k = 0; k < channels; ++k) {
-            metrics_.series.push_back({fmt::format("channel {}", k), {}, colour(k)});
-            decisions_.series.push_back({fmt::format("channel {}", k), {}, colour(k), false});
-        }
-    }
-
-    void add(const Row& row)
-    {
-        for (std::size_t k = 0; k < motion_.series.size(); ++k)
-            motion_.series[k].points.emplace_back(row.time_s, row.state(static_cast<Eigen::Index>(k)));
-        for (std::size_t k = 0; k < metrics_.series.size(); ++k) {
-            metrics_.series[k].points.emplace_back(row.time_s, row.metric[k]);
-            if (has_axis(row.assessment.isolated, k)) decisions_.series[k].points.emplace_back(row.time_s, static_cast<double>(k));
-        }
-    }
-
-    void write(const std::string& file) const { write_svg(file, {motion_, metrics_, decisions_}); }
-
-private:
-    static void label(Chart& chart, const std::string& title, const std::string& y_label)
-    {
-        chart.title = title;
-        chart.x_label = "time, s";
-        chart.y_label = y_label;
-    }
-
-    Chart motion_, metrics_, decisions_;
-};
-
 void run(const VesselOptions& options)
 {
     const auto input = load_vessel(options.file);
     if (!input) fail(input.error());
     if (options.gains) return print_gains(options, *input);
+    if (options.table) return print_vessel_table();
     const auto scheme = fdi::parse_observer_scheme(options.scheme.empty() ? "blind" : options.scheme).value();
     const auto states = static_cast<std::size_t>(input->model.a.rows());
     const auto channels = static_cast<std::size_t>(input->model.c.rows());
-    Plot plot(std::string(to_string(scheme)), states, channels);
+    VesselPlot plot(std::string(to_string(scheme)), states, channels);
     bool first = !options.json;
-    play(options, *input, scheme, [&](const Row& row) {
+    play(options, *input, scheme, [&](const VesselRow& row) {
         if (first) print_header(states, channels);
         first = false;
         if (options.json) std::cout << dump(json_of(row)) << '\n';
@@ -271,6 +151,8 @@ void add_vessel(CLI::App& program)
     verb->add_option("--seed", options->seed, "of the noise")->capture_default_str();
     verb->add_option("--plot", options->plot_file, "the run as a figure")->option_text("FILE.svg");
     verb->add_flag("--gains", options->gains, "print A, B, C, every observer's gain and poles as JSON, instead");
+    verb->add_flag("--table", options->table, "print the paper's run beside the figures recomputed from it: gains, window means, decisions")
+        ->excludes("--gains", "--vessel", "--fault");
     verb->add_flag("--json", options->json, "one JSON object per row");
     verb->callback([options] { run(*options); });
 }

@@ -3,11 +3,13 @@
 #include "quorient/attitude/integrator.hpp"
 #include "quorient/bus/settings.hpp"
 #include "quorient/calibration/cluster_file.hpp"
+#include "quorient/fdi/observer_bank.hpp"
 #include "quorient/fdi/settings.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"
 #include "quorient/runtime/node.hpp"
 #include "quorient/runtime/realtime.hpp"
 #include "quorient/simulation/simulated_instrument.hpp"
+#include "quorient/simulation/vessel.hpp"
 #include "quorient/voting/voter_settings.hpp"
 
 #include <cstdint>
@@ -39,7 +41,8 @@ struct LogSettings {
 struct SourceSettings {
     simulation::Scenario scenario;  ///< motion, rate, noise, faults; of a log only the faults and the seed count
     std::optional<LogSettings> log;
-    double speed = 1;  ///< times real time
+    std::optional<simulation::VesselScenario> vessel;  ///< in place of the scenario, of which then only the faults count
+    double speed = 1;                                  ///< times real time
 };
 
 struct SensorSettings {
@@ -60,6 +63,8 @@ struct DetectorProcess {
     std::uint32_t detector = 0;
     SensorKind kind = SensorKind::gyro;
     fdi::DetectorSettings detection;
+    std::optional<fdi::ObserverSettings> observers;  ///< of a vessel, in place of `detection`
+    double observer_margin = 1;
     fdi::VerdictSettings verdict;
 };
 
@@ -83,14 +88,15 @@ struct Expectations {
     std::optional<std::uint32_t> within_frames;  ///< from the fault's first frame to each lane's isolation
     std::optional<double> final_error_rad;       ///< of the voted attitude against truth
     bool no_gap = false;                         ///< of the voted stream
+    std::optional<double> each_fault_within_s;   ///< every fault of the truth is isolated by every lane so soon, and nothing else ever is
 
-    bool any() const { return isolated || instrument || within_frames || final_error_rad || no_gap; }
+    bool any() const { return isolated || instrument || within_frames || final_error_rad || no_gap || each_fault_within_s; }
 };
 
 struct LaneProcess {
     std::string name;
     DetectorProcess detector;
-    IntegratorProcess integrator;
+    IntegratorProcess integrator;  ///< where the system has an attitude
 };
 
 /// A whole system as its file describes it.
@@ -104,6 +110,11 @@ struct System {
     std::vector<VoterProcess> voters;
     ProcessSettings monitor;  ///< for tools that look on
     Expectations expectations;
+    std::optional<simulation::VesselModel> vessel;  ///< of a unit of kind vessel_rates: what the detectors take it to be
+    std::vector<std::string> channels;              ///< likewise, their names
+
+    /// A vessel's rates are detected on, and not integrated: no integrators, no voters.
+    bool has_attitude() const { return sensor.kind != SensorKind::vessel_rates; }
 
     /// The process of that name; an error that lists the names of this role.
     tl::expected<DetectorProcess, std::string> detector(std::string_view process) const;
