@@ -6,14 +6,17 @@ import unittest
 from harness import CONFIGURATIONS, ROOT, ProcessTest
 
 VESSEL = CONFIGURATIONS / "vessel.yaml"
-SPEED = 8  # 80 s of the scenario, 800 frames a second
+SPEED = 4  # 80 s of the scenario in 20 s
 
 
 class VesselDemo(ProcessTest):
     def test_isolates_each_fault_in_its_window_in_both_lanes(self):
         code, summary, stderr = self.launch(VESSEL, "--speed", SPEED)
         self.assertEqual(code, 0, f"{summary}\n{stderr}")
-        self.assertEqual([(fault["axis"], fault["begin_s"], fault["end_s"]) for fault in summary["faults"]], [(1, 20, 30), (0, 50, 70)])
+        for fault, (axis, begin_s, end_s) in zip(summary["faults"], [(1, 20, 30), (0, 50, 70)], strict=True):
+            self.assertEqual(fault["axis"], axis)
+            self.assertAlmostEqual(fault["begin_s"], begin_s, delta=0.2)  # a frame may be skipped on a machine without time
+            self.assertAlmostEqual(fault["end_s"], end_s, delta=0.2)
         self.assertEqual({lane["vendor"] for lane in summary["lanes"].values()}, {"fastdds", "cyclonedds"})
         for name, lane in summary["lanes"].items():
             self.assertEqual(lane["false_isolations"], [], name)
@@ -30,7 +33,7 @@ class VesselDemo(ProcessTest):
         for name, lane in summary["lanes"].items():
             self.assertEqual(lane["false_isolations"], [], name)
             self.assertEqual(lane["suspicious"], 0, name)
-            self.assertGreater(lane["verdicts"], 7200, name)
+            self.assertGreater(lane["verdicts"], 0.9 * summary["frames"], name)
 
     def test_fails_when_a_fault_is_not_found(self):
         fault = "axis=1,kind=bias,value=1.0e-5,start=2"

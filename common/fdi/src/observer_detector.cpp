@@ -43,7 +43,7 @@ void ObserverDetector::assess(const Measurement& measurement, Assessment& assess
     valid_ = measurement.valid & all_axes(bank_.channels());
     bank_.compare(samples_, valid_);
     if (frames_ < settling_frames_) assessment.outcome = Outcome::warming_up;
-    else if (bank_.scheme() == ObserverScheme::directional) judge_directional(assessment);
+    else if (bank_.scheme() == ObserverScheme::directional) judge_directional(measurement.identity.sequence, assessment);
     else judge_blind(assessment);
     bank_.advance(input_);
     last_ = measurement.identity;
@@ -79,7 +79,7 @@ void ObserverDetector::follow_to(const Measurement& measurement)
     }
 }
 
-void ObserverDetector::judge_directional(Assessment& assessment)
+void ObserverDetector::judge_directional(std::uint64_t sequence, Assessment& assessment)
 {
     assessment.outcome = Outcome::healthy;
     if (excluded_ != 0) {  // both observers use both channels: nothing can be compared any more
@@ -100,10 +100,13 @@ void ObserverDetector::judge_directional(Assessment& assessment)
         alarm_frames_ -= alarm_frames_ > 0 ? 1 : 0;
         return;
     }
+    // Metrics may pass 0 on their way to their direction: the onset is where the alarms began, not where they went on.
+    if (alarm_frames_ == 0) alarm_since_ = sequence;
     alarm_frames_ = std::min(alarm_frames_ + 1, bank_.attribution_frames() + 1);
     assessment.outcome = alarm_frames_ > bank_.attribution_frames() ? Outcome::isolated : Outcome::suspect;
     if (assessment.outcome == Outcome::suspect) return;
     assessment.isolated = axis_bit(channel);
+    assessment.onset = alarm_since_;
     const std::size_t other = 1 - channel;
     const double rival = bank_.metric(other) / bank_.metric_limit(other);
     if (rival <= 1 || rival * margin_ <= best) return;

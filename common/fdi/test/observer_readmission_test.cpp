@@ -71,6 +71,30 @@ TEST(ObserverReadmission, trusts_a_channel_again_once_its_fault_is_over)
     }
 }
 
+TEST(VesselMonitor, dates_a_fault_from_its_first_alarm)
+{
+    for (const auto scheme : {ObserverScheme::blind, ObserverScheme::directional}) {
+        for (unsigned seed = 1; seed <= 5; ++seed) {
+            auto monitor = monitor_of(scheme, 100);
+            PaperRun run;
+            run.noise = 2e-4;
+            run.seed = seed;
+            SensorFrame frame;
+            std::uint64_t onset = never;
+            run.play([&](double, const Eigen::VectorXd&, const Eigen::VectorXd& sample, double rudder) {
+                frame.interval_s = run.interval_s;
+                frame.valid_mask = 0b11;
+                frame.known_input[0] = rudder;
+                for (const std::size_t channel : {std::size_t{0}, std::size_t{1}})
+                    frame.increment[channel] = sample(static_cast<Eigen::Index>(channel)) * run.interval_s;
+                onset = std::min(onset, monitor.assess(frame).excluded_from[1]);
+                ++frame.sequence;
+            });
+            EXPECT_NEAR(static_cast<double>(onset), 2000, 2) << to_string(scheme) << " seed " << seed;
+        }
+    }
+}
+
 TEST(ObserverReadmission, never_trusts_a_channel_while_its_fault_lasts)
 {
     for (const auto scheme : {ObserverScheme::blind, ObserverScheme::directional}) {

@@ -47,7 +47,7 @@ private:
 
     bool read_input(const Measurement& measurement);
     void follow_to(const Measurement& measurement);
-    void judge_directional(Assessment& assessment);
+    void judge_directional(std::uint64_t sequence, Assessment& assessment);
     void judge_blind(Assessment& assessment) const;
     void judge_last(AxisMask working, Assessment& assessment) const;
     bool settled() const { return last_ && frames_ > settling_frames_; }
@@ -64,6 +64,7 @@ private:
     AxisMask valid_ = 0;                 ///< of the newest frame
     std::uint64_t frames_ = 0;           ///< since the observers started
     std::uint64_t settling_frames_ = 0;  ///< of them, those that tell nothing yet
+    std::uint64_t alarm_since_ = 0;      ///< directional: the sequence with which alarm_frames_ left 0
     std::uint64_t alarm_frames_ = 0;     ///< directional: up with every alarm, down with every frame without
     ObserverBank::Outputs samples_;
     ObserverBank::Inputs input_;
