@@ -19,7 +19,10 @@ tl::expected<std::unique_ptr<ObserverDetector>, std::string> ObserverDetector::m
     auto bank = ObserverBank::make(settings, interval_s);
     if (!bank) return tl::unexpected(bank.error());
     if (!(margin >= 1)) return tl::unexpected("margin must be 1 or more, got " + std::to_string(margin));
-    return std::unique_ptr<ObserverDetector>(new ObserverDetector(std::move(*bank), interval_s, margin));
+    const auto settling_frames = bank->start(ObserverBank::Outputs::Zero(settings.plant.outputs()), 0);
+    std::unique_ptr<ObserverDetector> detector(new ObserverDetector(std::move(*bank), interval_s, margin));
+    detector->naming_frames_ = settling_frames;
+    return detector;
 }
 
 unsigned ObserverDetector::detectable_remaining() const
@@ -45,6 +48,7 @@ void ObserverDetector::assess(const Measurement& measurement, Assessment& assess
     if (frames_ < settling_frames_) assessment.outcome = Outcome::warming_up;
     else if (bank_.scheme() == ObserverScheme::directional) judge_directional(measurement.identity.sequence, assessment);
     else judge_blind(assessment);
+    if (bank_.scheme() == ObserverScheme::blind && frames_ < naming_frames_) withhold_names(assessment);
     bank_.advance(input_);
     last_ = measurement.identity;
     ++frames_;
@@ -151,6 +155,14 @@ void ObserverDetector::judge_blind(Assessment& assessment) const
                                                            : Outcome::ambiguous;
     if (assessment.outcome != Outcome::isolated) return;
     assessment.isolated = assessment.candidate[0];
+    assessment.candidate_count = 0;
+}
+
+void ObserverDetector::withhold_names(Assessment& assessment)
+{
+    if (assessment.outcome == Outcome::healthy || assessment.outcome == Outcome::warming_up) return;
+    assessment.outcome = Outcome::suspect;
+    assessment.isolated = 0;
     assessment.candidate_count = 0;
 }
 

@@ -71,6 +71,22 @@ TEST(ObserverReadmission, trusts_a_channel_again_once_its_fault_is_over)
     }
 }
 
+TEST(VesselMonitor, names_the_right_channel_where_it_starts_beside_a_fault)
+{
+    for (const auto scheme : {ObserverScheme::blind, ObserverScheme::directional}) {
+        for (const int faulty : {0, 1}) {
+            PaperRun run;
+            run.noise = 2e-4;
+            run.gyro_fault = run.accelerometer_fault = 0;
+            const auto seen =
+                changes(run, monitor_of(scheme, 100), [&](double, Eigen::VectorXd& sample, double&) { sample(faulty) += 0.01; });
+            ASSERT_EQ(seen.size(), 1U) << to_string(scheme) << ", channel " << faulty;
+            EXPECT_EQ(seen[0].isolated, axis_bit(static_cast<std::size_t>(faulty))) << to_string(scheme);
+            EXPECT_LT(seen[0].time_s, 3);
+        }
+    }
+}
+
 TEST(VesselMonitor, dates_a_fault_from_its_first_alarm)
 {
     for (const auto scheme : {ObserverScheme::blind, ObserverScheme::directional}) {

@@ -19,6 +19,9 @@ namespace quorient::fdi {
 /// Blind: channel i is a candidate if all that the observer without i expects of the other channels comes true. All are: healthy. Exactly
 /// one is: isolated. Several: ambiguous. None: a pair, where an observer without it explains the rest; else blind.
 ///
+/// For the settling time after a start it names nobody: samples that were already faulty then are the observers' first state, and until
+/// that has decayed the blind scheme would lay the fault at another channel's door.
+///
 /// An input that is not finite (a rudder stream that stopped) makes the verdict `blind`: without it nothing can be expected. When it comes
 /// back, and after a gap of more than 20 frames, the observers start again; they warm up where the channels that are trusted and valid do
 /// not tell the whole state.
@@ -49,6 +52,7 @@ private:
     void follow_to(const Measurement& measurement);
     void judge_directional(std::uint64_t sequence, Assessment& assessment);
     void judge_blind(Assessment& assessment) const;
+    static void withhold_names(Assessment& assessment);
     void judge_last(AxisMask working, Assessment& assessment) const;
     bool settled() const { return last_ && frames_ > settling_frames_; }
     bool agrees_with(AxisMask trusted, AxisMask excluded) const;
@@ -64,6 +68,7 @@ private:
     AxisMask valid_ = 0;                 ///< of the newest frame
     std::uint64_t frames_ = 0;           ///< since the observers started
     std::uint64_t settling_frames_ = 0;  ///< of them, those that tell nothing yet
+    std::uint64_t naming_frames_ = 0;    ///< of them, those that name nobody yet (blind)
     std::uint64_t alarm_since_ = 0;      ///< directional: the sequence with which alarm_frames_ left 0
     std::uint64_t alarm_frames_ = 0;     ///< directional: up with every alarm, down with every frame without
     ObserverBank::Outputs samples_;
