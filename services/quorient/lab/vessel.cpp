@@ -123,7 +123,7 @@ void add_row(const Rule& rule, fdi::ObserverScheme scheme, const Result& result,
 {
     const double alarm_rate = static_cast<double>(result.alarms) / static_cast<double>(result.samples);
     const auto share = [&](std::uint64_t count) { return 100.0 * static_cast<double>(count) / static_cast<double>(trials); };
-    fmt::format_to(std::back_inserter(report.text), "{:<38}{:<13}{:>10.2e}{:>11}{:>10.1f} %{:>8.2f}{:>10.1f} %{:>8.2f}\n", rule.name,
+    fmt::format_to(std::back_inserter(report.text), "{:<38}{:<13}{:>10.2e}{:>13}{:>10.1f} %{:>8.2f}{:>10.1f} %{:>8.2f}\n", rule.name,
                    to_string(scheme), alarm_rate, result.false_isolations, share(result.right[1]), median(result.delay_s[1]),
                    share(result.right[0]), median(result.delay_s[0]));
     report.json["rules"].push_back({{"rule", rule.name},
@@ -145,7 +145,7 @@ Report vessel(const RunSettings& settings, const OnProgress& on_progress)
         "The vessel of paper 001, 80 s at 100 Hz, noise {:g}, allowed false alarms {:g} per sample; isolation confirmed by 2 of 3 "
         "samples.\n"
         "Runs without fault, then runs with the paper's two faults of 0.01: right channel and no other, and the median delay in s\n\n"
-        "{:<38}{:<13}{:>10}{:>11}{:>12}{:>8}{:>12}{:>8}\n",
+        "{:<38}{:<13}{:>10}{:>13}{:>12}{:>8}{:>12}{:>8}\n",
         noise, false_alarm, "limits", "scheme", "alarms", "false isol.", "gyro", "delay", "sway", "delay");
     std::size_t done = 0;
     for (const Rule& rule : rules) {
