@@ -44,9 +44,11 @@ def largest_gap(samples, truth, first, end):
     return longest
 
 
-def disordered(samples, key):
+def disordered(samples, end, key):
     last, count = {}, 0
     for sample in samples:
+        if sample.identity > end:
+            continue
         count += sample.output_sequence <= last.get(key(sample), 0)
         last[key(sample)] = sample.output_sequence
     return count
@@ -75,7 +77,7 @@ def judge(merged, plain, truths, summary, since, end, faulty, voters, full):
     one_epoch = len({identity[0] for identity in truth}) == 1
     figures.missing = min(own_missing, summary["voted"]["missing"]) if one_epoch else own_missing
     figures.plain_gap = largest_gap(plain, truth, plain[0].identity, end)
-    figures.disordered = disordered(merged, lambda sample: sample.voter) + disordered(plain, lambda sample: 0)
+    figures.disordered = disordered(merged, end, lambda sample: sample.voter) + disordered(plain, end, lambda sample: 0)
 
     judged = [(identity, error, sample) for identity, error, sample in errors(merged, truth) if identity[0] == since[0]]
     figures.largest_error_rad = max(error for _, error, _ in judged)

@@ -46,8 +46,10 @@ VoterService::VoterService(const system::VoterProcess& settings, bus::Bus& bus, 
         bus::topics::attitude.spec.name, [this] { return attitudes_->status(); }, true);
     node_.watch(
         bus::topics::voted.spec.name, [this] { return voted_.status(); }, false);
-    // `voted` lives by assertion: a voter that hangs loses it within one lease.
-    loop.every(static_cast<std::int64_t>(settings.voting.lease_s / 4 * 1e9), [this] { voted_.assert_liveliness(); });
+    // `voted` lives by assertion: a voter that hangs, or has nothing to say, loses it within one lease.
+    loop.every(static_cast<std::int64_t>(settings.voting.lease_s / 4 * 1e9), [this] {
+        if (brain_.may_own()) voted_.assert_liveliness();
+    });
     loop.every(readiness_period_ns, [this] { look_at_readiness(); });
     drain();
 }
@@ -60,11 +62,14 @@ void VoterService::look_at_readiness()
 
 void VoterService::drain()
 {
+    VotedAttitude owned;
+    while (brain_.next_owned(owned)) {
+        stamp(owned);
+        voted_.publish(owned);
+    }
     while (brain_.next_output(output_)) {
-        output_.attitude.stamp_ns[static_cast<std::size_t>(Hop::voter_in)] = node_.settings().stamps ? arrival_ns_ : 0;
-        output_.attitude.stamp_ns[static_cast<std::size_t>(Hop::voter_out)] = node_.stamp();
+        stamp(output_.attitude);
         outputs_.publish(output_.attitude);
-        if (output_.to_owned) voted_.publish(output_.attitude);
         ++node_.status().published;
         node_.set_state(ServiceState::running);
     }
@@ -72,6 +77,12 @@ void VoterService::drain()
     while (brain_.next_event(event)) node_.report(event.code, event.severity, event.identity, event.axes, runtime::text_of(event.text));
     copy_counters();
     poll_timer_.set(brain_.next_deadline_ns());
+}
+
+void VoterService::stamp(VotedAttitude& output)
+{
+    output.stamp_ns[static_cast<std::size_t>(Hop::voter_in)] = node_.settings().stamps ? arrival_ns_ : 0;
+    output.stamp_ns[static_cast<std::size_t>(Hop::voter_out)] = node_.stamp();
 }
 
 void VoterService::copy_counters()

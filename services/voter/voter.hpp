@@ -13,6 +13,7 @@ public:
 
 private:
     void drain();
+    void stamp(VotedAttitude& output);
     void look_at_readiness();
     void copy_counters();
 

@@ -213,6 +213,7 @@ tl::expected<System, std::string> load(const std::string& file, const Overrides&
     list_consumers(system);
     system.monitor = process_of(system, base, "monitor", monitor_service, ServiceRole::monitor);
     system.monitor.bus.transport = Transport::udp;
+    if (!system.voters.empty()) system.monitor.bus.voted_lease_s = system.voters.front().voting.lease_s;
     root.finish();
 
     if (!problems.empty()) return tl::make_unexpected(problems.text());

@@ -16,6 +16,9 @@ constexpr std::int64_t least_grace_ns = 100'000'000;
 /// A primary that the stronger voter names in so many frames running is its choice; in fewer it may be a stand-in for a late one.
 constexpr std::uint64_t choice_frames = 5;
 
+/// A voter that has seen one of the first frames of an epoch was there before any other had published much.
+constexpr std::uint64_t first_frames = 20;
+
 }  // namespace
 
 Voter::Brain::Brain(const VoterSettings& settings)
@@ -24,6 +27,7 @@ Voter::Brain::Brain(const VoterSettings& settings)
       patience_ns_(nanoseconds(settings.interval_s * settings.patience)),
       silence_ns_(nanoseconds(settings.interval_s * settings.silence_intervals)),
       lease_ns_(nanoseconds(settings.lease_s)),
+      listen_ns_(nanoseconds(settings.listen_s)),
       coasting_interval_ns_(nanoseconds(settings.coasting_interval_s)),
       coasting_to_lost_ns_(nanoseconds(settings.coasting_to_lost_s)),
       majority_(settings.lanes.size() / 2 + 1),
@@ -32,7 +36,8 @@ Voter::Brain::Brain(const VoterSettings& settings)
       newcomers_(settings.lanes.size(), majority_, std::max(silence_ns_, least_grace_ns)),
       corroboration_(settings.lanes.size(), majority_, settings.settle_frames, settings.return_frames, silence_ns_),
       board_(settings, majority_, corroboration_, narrator_),
-      ranking_(settings)
+      ranking_(settings),
+      owned_(interval_ns_)
 {
     promised_ns_ = std::numeric_limits<std::int64_t>::min();
 }
@@ -78,8 +83,8 @@ void Voter::Brain::poll(std::int64_t now_ns)
 bool Voter::Brain::may_own() const
 {
     if (!ranking_.established() || synchronised_ns_) return false;
-    const bool coasting = level_ == VoteLevel::coasting || level_ == VoteLevel::lost;
-    return !coasting || !ranking_.is_behind(identity_of(last_), *now_);
+    const bool repeats = coasted_ns_ > last_frame_ns_;
+    return !repeats || !ranking_.is_behind(identity_of(last_), *now_);
 }
 
 /// Time goes on. A voter that was away longer than its lease is no longer believed by anyone and starts over; after a shorter delay
@@ -114,9 +119,27 @@ void Voter::Brain::start_over(std::int64_t delay_ns)
     synchronised_ns_ = ranking_.has_others() ? *now_ + lease_ns_ : drained_ns_;
 }
 
+/// In the middle of a stream there is another voter to be expected, whose numbers and primary are to be taken over.
+bool Voter::Brain::knows_where_to_begin()
+{
+    if (!joins_ || !ranking_.has_others()) return true;
+    if (!frames_since_ns_ && timeline_.started()) {
+        frames_since_ns_ = *now_;
+        from_the_beginning_ = timeline_.newest().sequence < first_frames;
+    }
+    if (from_the_beginning_) return true;
+    if (ranking_.has_heard()) {
+        if (!heard_since_ns_) heard_since_ns_ = *now_;
+        return *now_ >= *heard_since_ns_ + lease_ns_;  // what it hears first is the other's history
+    }
+    discard_ = frames_since_ns_ && *now_ >= *frames_since_ns_ + listen_ns_;
+    return discard_;
+}
+
 void Voter::Brain::finish_synchronising()
 {
     synchronised_ns_.reset();
+    joins_ = false;
     if (discard_) timeline_.pass(timeline_.newest());
     discard_ = false;
     if (const VotedAttitude* other = ranking_.farthest(*now_)) adopt(*other);
@@ -185,8 +208,8 @@ void Voter::Brain::consider_newcomers()
 
 void Voter::Brain::go_on()
 {
-    if (synchronised_ns_ && *now_ >= *synchronised_ns_) finish_synchronising();
     consider_newcomers();
+    if (synchronised_ns_ && *now_ >= *synchronised_ns_ && knows_where_to_begin()) finish_synchronising();
     if (*now_ >= drained_ns_) {
         board_.mark_silent(timeline_, silence_ns_, *now_);
         board_.release_last_resort(timeline_);
@@ -195,6 +218,7 @@ void Voter::Brain::go_on()
         publish_what_is_ready(false);
         coast_if_due();
     }
+    owned_.release(ranking_, *now_);
     const bool owns = may_own() && ranking_.leader(*now_) == nullptr;
     if (owns && !owns_) narrator_.ownership(identity_of(last_), ranking_.has_stronger());
     owns_ = owns;
@@ -416,9 +440,9 @@ void Voter::Brain::coast_if_due()
 
 void Voter::Brain::emit(const VotedAttitude& attitude, bool repeated)
 {
-    Output& output = outputs_.push();
-    output.attitude = attitude;
-    output.to_owned = ranking_.may_write({identity_of(attitude), attitude.output_sequence}, repeated);
+    outputs_.push().attitude = attitude;
+    ranking_.published(attitude.output_sequence);
+    owned_.push(attitude, repeated, *now_);
     ++counters_.published;
 }
 
@@ -437,10 +461,13 @@ void Voter::Brain::plan()
         if (time_ns > *now_) earliest = std::min(earliest, time_ns);
     };
     consider(drained_ns_);
+    consider(owned_.deadline_ns());
     consider(newcomers_.deadline_ns());
     consider(ranking_.leader_ends_ns(*now_));
     consider(board_.silence_deadline_ns(timeline_, silence_ns_));
     if (synchronised_ns_) consider(*synchronised_ns_);
+    if (synchronised_ns_ && frames_since_ns_) consider(*frames_since_ns_ + listen_ns_);
+    if (synchronised_ns_ && heard_since_ns_) consider(*heard_since_ns_ + lease_ns_);
     for (auto waiting = timeline_.next_open(timeline_.next()); waiting; waiting = timeline_.next_open(*waiting + 1)) {
         consider(timeline_.due_ns(*waiting) + patience_ns_);
     }

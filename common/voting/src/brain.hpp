@@ -6,6 +6,7 @@
 #include "quorient/voting/continuity.hpp"
 #include "quorient/voting/corroboration.hpp"
 #include "quorient/voting/newcomers.hpp"
+#include "quorient/voting/owned_stream.hpp"
 #include "quorient/voting/timeline.hpp"
 #include "quorient/voting/voter.hpp"
 #include "quorient/voting/voter_ranking.hpp"
@@ -27,6 +28,7 @@ public:
 
     std::int64_t next_deadline_ns() const { return promised_ns_; }
     bool next_output(Output& output) { return outputs_.pop(output); }
+    bool next_owned(VotedAttitude& output) { return owned_.next(output); }
     bool next_event(VoterEvent& event) { return narrator_.next(event); }
     const VoterCounters& counters() const { return counters_; }
     VoteLevel level() const { return level_; }
@@ -37,6 +39,7 @@ public:
 private:
     void notice(std::int64_t now_ns);
     void start_over(std::int64_t delay_ns);
+    bool knows_where_to_begin();
     void finish_synchronising();
     void adopt(const VotedAttitude& output);
 
@@ -69,6 +72,7 @@ private:
     std::int64_t patience_ns_;
     std::int64_t silence_ns_;
     std::int64_t lease_ns_;
+    std::int64_t listen_ns_;
     std::int64_t coasting_interval_ns_;
     std::int64_t coasting_to_lost_ns_;
     std::size_t majority_;
@@ -80,6 +84,7 @@ private:
     LaneBoard board_;
     Continuity continuity_;
     VoterRanking ranking_;
+    OwnedStream owned_;
     BoundedQueue<Output, 128> outputs_;
     VoterCounters counters_;
 
@@ -87,6 +92,10 @@ private:
     std::int64_t promised_ns_ = 0;                 ///< when poll was asked for
     std::int64_t drained_ns_ = 0;                  ///< after a short delay of our own, what waited in the queues has been handed in by then
     std::optional<std::int64_t> synchronised_ns_;  ///< until then nothing is published
+    bool joins_ = true;                            ///< has not published since it started
+    std::optional<std::int64_t> frames_since_ns_;  ///< when the first frame came
+    std::optional<std::int64_t> heard_since_ns_;   ///< when another voter was heard first
+    bool from_the_beginning_ = false;              ///< and that was among the first of its epoch
     bool discard_ = false;                         ///< what is pending when synchronised is too old to publish
 
     LaneIndex primary_ = 0;

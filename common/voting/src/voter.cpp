@@ -36,6 +36,10 @@ std::int64_t Voter::next_deadline_ns() const
 {
     return brain_->next_deadline_ns();
 }
+bool Voter::next_owned(VotedAttitude& output)
+{
+    return brain_->next_owned(output);
+}
 bool Voter::next_output(Output& output)
 {
     return brain_->next_output(output);

@@ -10,6 +10,9 @@
 namespace quorient::voting {
 namespace {
 
+/// So long a voter that starts waits to catch up with the others before it writes nevertheless.
+constexpr unsigned longest_lag_frames = 400;
+
 bool is_repeated(const VotedAttitude& output)
 {
     return output.mode == static_cast<std::uint8_t>(AttitudeMode::coasting) || output.mode == static_cast<std::uint8_t>(AttitudeMode::lost);
@@ -38,6 +41,11 @@ VoterRanking::VoterRanking(const VoterSettings& settings)
         others_.back().voter = voter;
         others_.back().stronger = stronger;
     }
+}
+
+bool VoterRanking::has_heard() const
+{
+    return std::any_of(others_.begin(), others_.end(), [](const Other& other) { return other.heard; });
 }
 
 bool VoterRanking::on_output(const VotedAttitude& output, std::int64_t now_ns)
@@ -105,42 +113,55 @@ const VotedAttitude* VoterRanking::farthest(std::int64_t now_ns) const
 
 std::uint64_t VoterRanking::next_output_sequence(Identity identity) const
 {
+    if (own_sequence_ == 0 && !has_heard()) return identity.sequence + 1;
     std::uint64_t next = own_sequence_ + 1;
     for (const Other& other : others_) {
-        if (!other.heard || other.newest.identity > identity) continue;
-        next = std::max(next, other.newest.output_sequence + (other.newest.identity == identity ? 0 : 1));
+        if (other.heard) next = std::max(next, number_beside(other, identity));
     }
     return next;
 }
 
+/// The number that keeps in step with this voter: its own number of this frame, or the one after that of the frame before.
+std::uint64_t VoterRanking::number_beside(const Other& other, Identity identity)
+{
+    const Position& newest = other.newest;
+    if (newest.identity <= identity) return newest.output_sequence + (newest.identity == identity ? 0 : 1);
+    const VotedAttitude& same = other.output[identity.sequence % remembered];
+    if (identity_of(same) == identity) return same.output_sequence;
+    const std::uint64_t behind = newest.identity.epoch == identity.epoch ? newest.identity.sequence - identity.sequence : 0;
+    return newest.output_sequence - std::min(behind, newest.output_sequence);
+}
+
 bool VoterRanking::may_write(Position position, bool repeated)
 {
-    own_sequence_ = position.output_sequence;
     if (!established()) {
         if (!repeated) ++good_frames_;
         written_ = std::max(written_, highest_seen_);
         return false;
     }
-    if (!writing_ && is_overtaken(position) && held_back_ < good_frames_required_) {
+    if (!writing_ && must_hold_back(position)) {
         ++held_back_;
         written_ = std::max(written_, highest_seen_);
         return false;
     }
     writing_ = true;
-    for (const Other& other : others_) {
-        if (other.stronger && other.heard) written_ = std::max(written_, other.newest);
-    }
     const bool forward =
         repeated ? position > written_ && position.identity >= highest_seen_.identity : position.identity > written_.identity;
     if (forward) written_ = position;
     return forward;
 }
 
-/// A weaker voter has written this frame already: the first frame of a new owner would be a step back for its readers.
-bool VoterRanking::is_overtaken(Position position) const
+/// A weaker voter has written this frame already: the first frame of a new owner would be a step back for its readers. One that is merely
+/// quicker must not keep the owner away for good; to one that lags behind, the owner has to catch up first.
+bool VoterRanking::must_hold_back(Position position) const
 {
-    return std::any_of(others_.begin(), others_.end(),
-                       [&](const Other& other) { return !other.stronger && other.heard && position.identity <= other.newest.identity; });
+    for (const Other& other : others_) {
+        const Identity theirs = other.newest.identity;
+        if (other.stronger || !other.heard || position.identity > theirs) continue;
+        const bool lags = theirs.epoch > position.identity.epoch || theirs.sequence > position.identity.sequence + 1;
+        if (held_back_ < (lags ? longest_lag_frames : good_frames_required_)) return true;
+    }
+    return false;
 }
 
 bool VoterRanking::is_behind(Identity identity, std::int64_t now_ns) const

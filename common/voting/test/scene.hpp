@@ -159,6 +159,8 @@ public:
 
     void collect()
     {
+        VotedAttitude written;
+        while (voter.next_owned(written)) owned.push_back(written);
         Output output;
         while (voter.next_output(output)) {
             outputs.push_back(output);
@@ -185,6 +187,7 @@ public:
     Voter voter;
     std::int64_t now;
     std::vector<Output> outputs;
+    std::vector<VotedAttitude> owned;  ///< written to `voted`
     std::vector<std::int64_t> published_ns;
     std::vector<VoterEvent> events;
 };

@@ -58,6 +58,9 @@ int main(int argc, char** argv)
     qos.reliability().kind = RELIABLE_RELIABILITY_QOS;
     qos.history().depth = 64;
     qos.ownership().kind = EXCLUSIVE_OWNERSHIP_QOS;  // the one line: of several voters, DDS shows the owner's samples
+    // Fast DDS notices that an owner has died only by the reader's own lease; Cyclone DDS by the writer's.
+    qos.liveliness().kind = MANUAL_BY_TOPIC_LIVELINESS_QOS;
+    qos.liveliness().lease_duration = {0, 50'000'000};
     auto* reader = participant->create_subscriber(SUBSCRIBER_QOS_DEFAULT)->create_datareader(topic, qos);
     if (!reader) return std::fprintf(stderr, "cannot read quorient/voted\n"), 1;
 

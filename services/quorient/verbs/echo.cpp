@@ -79,6 +79,9 @@ void add_echo(CLI::App& program)
     verb->add_option("topic", options->topic, "quorient/voter_output, or voter_output")->required();
     verb->add_option("--count", options->count, "End after so many samples; 0 = go on");
     verb->add_option("--timeout", options->timeout_s, "End with exit code 1 after so many seconds; 0 = go on");
+    verb->add_option("--lease", options->bus.voted_lease_s, "Of `voted`, if above max(50 ms, 3 intervals) in the system file")
+        ->type_name("S")
+        ->capture_default_str();
     verb->add_flag("--json", options->json, "One JSON object per sample");
     verb->footer("Example:\n  quorient echo voter_output --count 3 --json");
     verb->callback([options] {

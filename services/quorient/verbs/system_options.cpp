@@ -29,6 +29,7 @@ std::unique_ptr<bus::Bus> BusOptions::open(const std::string& participant) const
     settings.interface = interface == "any" ? "" : interface;
     settings.peers = peers;
     settings.participant = participant;
+    settings.voted_lease_s = voted_lease_s;
     auto opened = bus::open(settings);
     if (!opened) {
         fmt::print(stderr, "{}\n", opened.error());

@@ -15,6 +15,7 @@ struct BusOptions {
     std::string interface = "lo";
     std::vector<std::string> peers;
     std::uint32_t unit = 1;
+    double voted_lease_s = 0.05;  ///< see bus::Settings
 
     void add_to(CLI::App& verb);
 

@@ -213,6 +213,11 @@ private:
         dds::DataReaderQos qos = subscriber_->get_default_datareader_qos();
         apply(topic.qos, settings_, qos);
         qos.reliable_reader_qos().times.heartbeatResponseDelay = seconds(0);
+        if (topic.qos.exclusive) {
+            // Fast DDS watches a writer by the reader's own lease alone: with the default, infinite, an owner that died stays the owner.
+            qos.liveliness().kind = dds::MANUAL_BY_TOPIC_LIVELINESS_QOS;
+            qos.liveliness().lease_duration = seconds(settings_.voted_lease_s);
+        }
         auto [type, entity] = topic_of(topic);
         auto* reader = subscriber_->create_datareader(entity, qos);
         if (!reader) throw Error(fmt::format("Fast DDS: cannot read {}", topic.name));

@@ -19,6 +19,7 @@ struct Settings {
     Transport transport = Transport::udp;  ///< udp, shared_memory (Fast DDS) or iceoryx (Cyclone DDS)
     std::string participant;               ///< name shown to other tools
     double heartbeat_s = 0.0025;           ///< of reliable writers: at most half a frame interval
+    double voted_lease_s = 0.05;           ///< that a reader of `voted` asks for: at least the writers'
     bool security = false;                 ///< DDS Security asked for; refused together with shared memory
 };
 

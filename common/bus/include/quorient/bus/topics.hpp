@@ -57,7 +57,8 @@ inline constexpr Topic<TruthState> truth{"quorient/truth", TypeId::truth_state, 
 inline constexpr Topic<FaultVerdict> verdict{"quorient/verdict", TypeId::fault_verdict, {.transient_local = true}};
 inline constexpr Topic<AttitudeState> attitude{"quorient/attitude", TypeId::attitude_state, {.transient_local = true}};
 inline constexpr Topic<VotedAttitude> voter_output{"quorient/voter_output", TypeId::voter_output, {.transient_local = true}};
-inline constexpr Topic<VotedAttitude> voted{"quorient/voted", TypeId::voted_attitude, {.transient_local = true, .exclusive = true}};
+// No history: a late reader would be given that of the weaker voters too, behind what it has read already.
+inline constexpr Topic<VotedAttitude> voted{"quorient/voted", TypeId::voted_attitude, {.exclusive = true}};
 inline constexpr Topic<HealthEvent> event{"quorient/event", TypeId::health_event, {.transient_local = true, .depth = 256, .latched = true}};
 inline constexpr Topic<ServiceStatus> status{"quorient/status", TypeId::service_status, {.reliable = false, .depth = 8}};
 inline constexpr Topic<FaultCommand> command{"quorient/command", TypeId::fault_command, {.depth = 64}};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 
 namespace quorient::voting {
@@ -20,12 +21,21 @@ public:
         return entry_[(first_ + size_++) % Capacity];
     }
 
+    /// The oldest; null where there is none.
+    const T* front() const { return size_ == 0 ? nullptr : &entry_[first_]; }
+
+    void drop_front()
+    {
+        assert(size_ > 0);
+        first_ = (first_ + 1) % Capacity;
+        --size_;
+    }
+
     bool pop(T& entry)
     {
         if (size_ == 0) return false;
         entry = entry_[first_];
-        first_ = (first_ + 1) % Capacity;
-        --size_;
+        drop_front();
         return true;
     }
 

@@ -13,10 +13,9 @@
 
 namespace quorient::voting {
 
-/// What is to be published on `voter_output`, and whether on `voted` too.
+/// What is to be published on `voter_output`.
 struct Output {
     VotedAttitude attitude;
-    bool to_owned = false;
 };
 
 /// Something an operator may want to know, once; the service adds its own name and the wall clock.
@@ -45,7 +44,7 @@ struct VoterCounters {
 /// average; the others vouch for it. The rules and their reasons are in common/voting/README.md.
 ///
 /// Time is passed in as steady nanoseconds and must not decrease (an earlier time is taken as the latest one seen).
-/// After every call, drain next_output and next_event. Nothing is allocated after construction.
+/// After every call, drain next_owned, next_output and next_event, in this order. Nothing is allocated after construction.
 ///
 /// Not guaranteed: with two lanes that contradict each other it cannot tell who is right; it stays with the primary and says SINGLE.
 class Voter {
@@ -67,6 +66,9 @@ public:
 
     /// When poll must be called at the latest.
     std::int64_t next_deadline_ns() const;
+
+    /// What is to be written to `voted`, before anything is published on `voter_output`: a voter that follows this one writes after it.
+    bool next_owned(VotedAttitude& output);
 
     /// @returns whether there was one; the oldest first.
     bool next_output(Output& output);

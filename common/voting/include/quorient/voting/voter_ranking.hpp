@@ -23,14 +23,16 @@ struct Position {
 /// What the other voters of the unit publish, whom this one follows, and what it may write to `voted`.
 ///
 /// A voter follows the strongest fresh voter among those stronger than itself. It writes `voted` only after a number of good frames, and
-/// never steps back: nothing at or below what a stronger voter has published, nor, when it begins to write, what any
-/// voter has published.
+/// never steps back: when it begins to write, nothing at or below what any voter has published.
 class VoterRanking {
 public:
     explicit VoterRanking(const VoterSettings& settings);
 
     bool has_others() const { return !others_.empty(); }
     bool has_stronger() const { return !others_.empty() && others_.front().stronger; }
+
+    /// Some other voter has been heard.
+    bool has_heard() const;
 
     /// @returns false for own samples and for voters that are not in the list.
     bool on_output(const VotedAttitude& output, std::int64_t now_ns);
@@ -48,10 +50,14 @@ public:
     /// The farthest output of all fresh voters; null where there is none.
     const VotedAttitude* farthest(std::int64_t now_ns) const;
 
-    /// The number of the next output, of this frame: above all own ones and in step with the others'.
+    /// The number of the next output, of this frame: above all own ones and in step with the others'. Of one who
+    /// knows of none: above what they can have had, unless their publisher restarted.
     std::uint64_t next_output_sequence(Identity identity) const;
 
-    /// To be asked once for every output, in order.
+    /// Told of every own output.
+    void published(std::uint64_t output_sequence) { own_sequence_ = output_sequence; }
+
+    /// Whether this output may be written to `voted`. To be asked once for every output, in order.
     bool may_write(Position position, bool repeated);
 
     /// The voter was away, or has just started.
@@ -77,8 +83,9 @@ private:
         std::array<VotedAttitude, remembered> output{};  ///< by sequence
     };
 
+    static std::uint64_t number_beside(const Other& other, Identity identity);
     const Other* leading(std::int64_t now_ns) const;
-    bool is_overtaken(Position position) const;
+    bool must_hold_back(Position position) const;
     std::int64_t fresh_until_ns(const Other& other) const;
     static const VotedAttitude& newest(const Other& other) { return other.output[other.newest.identity.sequence % remembered]; }
 

@@ -34,6 +34,7 @@ struct VoterSettings {
         0.02;                      ///< rotation that the last known rate does not tell, for the standard deviation of a coasting attitude
     unsigned return_frames = 200;  ///< agreeing frames until an excluded lane counts again
     double lease_s = 0.05;         ///< of the ownership of `voted`; an own delay above it means: re-synchronise
+    double listen_s = 2;           ///< for the other voters, by one that starts in the middle of a stream (their discovery takes its time)
     unsigned level_window = 10;    ///< frames that the level is told from
     unsigned good_frames_before_owning = 20;
 };
