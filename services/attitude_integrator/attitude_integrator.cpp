@@ -26,6 +26,9 @@ constexpr double much_surer = 4;
 /// An order about a frame that other lanes have had already waits for it; one further off is a mistake.
 constexpr double most_frames_ahead = 64;
 
+/// Of an axis' direction between descriptions of the same sensors: more than rounding, less than any mounting.
+constexpr double largest_axis_change = 1e-6;
+
 double angle_deg(const std::array<double, 4>& rotation)
 {
     const double sine = std::hypot(rotation[1], rotation[2], rotation[3]);
@@ -91,8 +94,9 @@ void AttitudeIntegrator::handle_accepted()
 {
     while (const auto* accepted = intake_.next()) {
         publish_pending();
-        if (!integrator_ && !prepare(*intake_.description(), accepted->frame.sequence)) return;
-        integrate(accepted->frame);
+        if (!integrator_ && !prepare(*intake_.description(), accepted->frame.sequence)) continue;
+        if (accepted->new_description) follows_ = same_axes(*intake_.description());
+        if (follows_) integrate(accepted->frame);
     }
 }
 
@@ -105,17 +109,34 @@ bool AttitudeIntegrator::prepare(const ClusterDescription& description, std::uin
     if (description.initial_attitude_known != static_cast<std::uint8_t>(InitialAttitude::unknown))
         integration.initial_attitude = description.initial_attitude;
     auto cluster = geometry::make_cluster(description);
-    auto made = cluster ? attitude::Integrator::make(integration, *cluster)
-                        : tl::expected<attitude::Integrator, std::string>{tl::make_unexpected(cluster.error())};
+    if (!cluster) {
+        // Whoever publishes this may mend it; a settings file that fits no cluster is this process's own end.
+        node_.report_throttled(EventCode::rejected_input, Severity::fatal, {description.epoch, 0}, 0,
+                               fmt::format("a description is refused: {}", cluster.error()));
+        return false;
+    }
+    auto made = attitude::Integrator::make(integration, *cluster);
     if (!made) {
         node_.report(EventCode::rejected_input, Severity::fatal, {description.epoch, 0}, 0, made.error());
         node_.loop().quit(2);
         return false;
     }
     integrator_.emplace(std::move(*made));
+    axes_ = cluster->axes;
     if (!integration.initialised && voted_) integrator_->seed(*voted_);
     if (verdict_) integrator_->apply(*verdict_);
     return true;
+}
+
+/// The history is one of these axes; a publisher that comes back with others needs lanes that start anew.
+bool AttitudeIntegrator::same_axes(const ClusterDescription& description)
+{
+    const auto cluster = geometry::make_cluster(description);
+    if (cluster && cluster->axes.rows() == axes_.rows() && cluster->axes.isApprox(axes_, largest_axis_change)) return true;
+    node_.report(EventCode::rejected_input, Severity::fatal, {description.epoch, 0}, 0,
+                 cluster ? "the description has other axes than the one this lane started with: restart the lane to follow it"
+                         : fmt::format("a description is refused: {}", cluster.error()));
+    return false;
 }
 
 void AttitudeIntegrator::integrate(const SensorFrame& frame)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "quorient/attitude/integrator.hpp"
+#include "quorient/geometry/sensor_cluster.hpp"
 #include "quorient/runtime/frame_intake.hpp"
 #include "quorient/runtime/node.hpp"
 #include "quorient/system/system.hpp"
@@ -23,6 +24,7 @@ private:
     std::string reset_attitude(const FaultCommand& command);
     void handle_accepted();
     bool prepare(const ClusterDescription& description, std::uint64_t first_sequence);
+    bool same_axes(const ClusterDescription& description);
     void integrate(const SensorFrame& frame);
     void rejoin(const VotedAttitude& voted);
     void publish_pending();
@@ -37,6 +39,8 @@ private:
     runtime::Timer& patience_timer_;
     runtime::FrameIntake intake_;
     std::optional<attitude::Integrator> integrator_;
+    geometry::Axes axes_;                        ///< of integrator_
+    bool follows_ = true;                        ///< the present description is of these axes
     std::optional<VotedAttitude> voted_;         ///< newest, until this integrator has started
     std::optional<FaultVerdict> verdict_;        ///< newest of the lane's detector
     std::optional<Identity> pending_;            ///< integrated, not yet published

@@ -86,8 +86,11 @@ bool ParityFdi::prepare(const ClusterDescription& description)
     auto made = settings_.observers ? make_observers(description) : make_method(description);
     if (!made) {
         node_.report(EventCode::rejected_input, Severity::fatal, {description.epoch, 0}, 0, made.error());
-        node_.loop().quit(2);
-        return false;
+        // Whoever publishes this may mend it; a method that does not fit the first sound cluster is the system file's mistake.
+        const bool mendable = monitor_ || !cluster;
+        if (!mendable) node_.loop().quit(2);
+        monitor_.reset();
+        return mendable;
     }
     monitor_ = std::move(*made);
     if (last_.isolated_mask != 0) {

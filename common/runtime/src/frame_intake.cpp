@@ -13,6 +13,12 @@ constexpr double silent_at_least_s = 0.1;
 /// A value at the end of its range is legal; rounding must not push it out.
 constexpr double range_tolerance = 1.0 + 1e-9;
 
+/// A description may come a little after its first frames; one that stays away so long is missing.
+constexpr std::int64_t description_patience_ns = 500'000'000;
+
+/// One frame that is not newer is the network's doing; so many without a newer one in between are a publisher that counts again.
+constexpr std::uint32_t restart_after = 5;
+
 }  // namespace
 
 const char* FrameIntake::problem_of(const ClusterDescription& description)
@@ -28,8 +34,9 @@ const char* FrameIntake::problem_of(const ClusterDescription& description)
 void FrameIntake::describe(const ClusterDescription& description)
 {
     if (description.unit != unit_ || description.kind != static_cast<std::uint8_t>(kind_)) return;
-    if (problem_of(description)) {
+    if (const char* why = problem_of(description)) {
         ++counters_.rejected_frames;
+        complain({.fault = Fault::description, .identity = {description.epoch, 0}, .why = why});
         return;
     }
     for (std::size_t i = 0; i < description_count_; ++i) {
@@ -50,8 +57,31 @@ bool FrameIntake::offer(const SensorFrame& frame, std::int64_t now_ns)
         ++counters_.waiting_lost;
     }
     waiting_[(waiting_begin_ + waiting_count_) % waiting_capacity] = frame;
-    ++waiting_count_;
+    if (++waiting_count_ == 1) waiting_since_ns_ = now_ns;
+    look_at_waiting(now_ns);
     return true;
+}
+
+void FrameIntake::complain(const Complaint& complaint)
+{
+    complaint_ = complaint;
+    ++complaints_;
+}
+
+/// Tells which description the oldest waiting frame has been missing for too long.
+void FrameIntake::look_at_waiting(std::int64_t now_ns)
+{
+    const auto& frame = waiting_[waiting_begin_];
+    if (now_ns - waiting_since_ns_ < description_patience_ns || description_for(frame)) return;
+    waiting_since_ns_ = now_ns;
+    if (complaint_.fault == Fault::description && complaint_.identity.epoch == frame.epoch) return complain(complaint_);
+    Complaint missing{.fault = Fault::no_description, .identity = identity_of(frame), .got = frame.description_revision};
+    for (std::size_t i = 0; i < description_count_; ++i) {
+        if (descriptions_[i].epoch != frame.epoch) continue;
+        missing.fault = Fault::unknown_revision;
+        missing.expected = std::max<std::uint64_t>(missing.expected, descriptions_[i].revision);
+    }
+    complain(missing);
 }
 
 bool FrameIntake::order(const SensorFrame& frame, std::int64_t now_ns)
@@ -64,13 +94,19 @@ bool FrameIntake::order(const SensorFrame& frame, std::int64_t now_ns)
             foreign_epoch_ = identity.epoch;
             return false;
         }
+        // What still waits for its description is of a publisher that is gone: it must not hold up the new one.
+        counters_.waiting_lost += waiting_count_;
+        waiting_count_ = 0;
     } else if (started_ && identity <= newest_) {
         ++(identity == newest_ ? counters_.duplicates : counters_.late);
+        if (++older_in_a_row_ % restart_after == 0)
+            complain({.fault = Fault::sequence_restart, .identity = identity, .got = identity.sequence, .expected = newest_.sequence});
         return false;
     } else if (started_) {
         counters_.gaps += identity.sequence - newest_.sequence - 1;
     }
     started_ = true;
+    older_in_a_row_ = 0;
     newest_ = identity;
     last_arrival_ns_ = now_ns;
     if (std::isfinite(frame.interval_s)) interval_s_ = frame.interval_s;
@@ -94,6 +130,7 @@ const FrameIntake::Accepted* FrameIntake::next()
         accepted_.frame = frame;
         waiting_begin_ = (waiting_begin_ + 1) % waiting_capacity;
         --waiting_count_;
+        waiting_since_ns_ = last_arrival_ns_;
         accepted_.new_epoch = frame.epoch != last_handled_epoch_;
         if (!clean(accepted_.frame, *description)) {
             ++counters_.rejected_frames;
@@ -111,9 +148,15 @@ const FrameIntake::Accepted* FrameIntake::next()
 
 bool FrameIntake::clean(SensorFrame& frame, const ClusterDescription& description)
 {
-    if (frame.axis_count != description.axis_count) return false;
-    if (!(frame.interval_s > 0) || !std::isfinite(frame.interval_s)) return false;
-    if (!accepted_.new_epoch && frame.sample_time_ns <= last_sample_time_ns_) return false;
+    Complaint wrong{.identity = identity_of(frame)};
+    if (frame.axis_count != description.axis_count)
+        wrong = {.fault = Fault::axis_count, .identity = wrong.identity, .got = frame.axis_count, .expected = description.axis_count};
+    else if (!(frame.interval_s > 0) || !std::isfinite(frame.interval_s)) wrong.fault = Fault::interval;
+    else if (!accepted_.new_epoch && frame.sample_time_ns <= last_sample_time_ns_) wrong.fault = Fault::sample_time;
+    if (wrong.fault != Fault::none) {
+        complain(wrong);
+        return false;
+    }
     for (std::size_t axis = 0; axis < frame.axis_count; ++axis) {
         if (!has_axis(frame.valid_mask, axis)) continue;
         const double limit = description.range[axis] * frame.interval_s * range_tolerance + description.quantum[axis];
@@ -121,6 +164,7 @@ bool FrameIntake::clean(SensorFrame& frame, const ClusterDescription& descriptio
         if (std::isfinite(frame.increment[axis]) && std::isfinite(frame.accumulated[axis]) && in_range) continue;
         frame.valid_mask &= ~axis_bit(axis);
         ++counters_.rejected_values;
+        complain({.fault = Fault::value, .identity = wrong.identity, .got = axis});
     }
     frame.valid_mask &= all_axes(frame.axis_count);
     return true;

@@ -86,13 +86,14 @@ void Node::report(EventCode code, Severity severity, Identity identity, std::uin
     if (settings_.log_events) spdlog::log(level_of(severity), "{}: {}", settings_.name, text);
 }
 
-void Node::report_throttled(EventCode code, Severity severity, Identity identity, std::uint32_t axes, std::string_view text)
+bool Node::report_throttled(EventCode code, Severity severity, Identity identity, std::uint32_t axes, std::string_view text)
 {
     auto& last = last_told_ns_[static_cast<std::uint8_t>(code)];
     const auto now = clock().steady_ns();
-    if (last != 0 && now - last < second_ns) return;
+    if (last != 0 && now - last < second_ns) return false;
     last = now;
     report(code, severity, identity, axes, text);
+    return true;
 }
 
 void Node::set_state(ServiceState state)

@@ -31,6 +31,26 @@ public:
         std::uint64_t waiting_lost = 0;  ///< gave way while their description did not come
     };
 
+    /// What a publisher does wrong.
+    enum class Fault {
+        none,
+        description,       ///< problem_of() says what
+        axis_count,        ///< got, expected: of the frame, of its description
+        interval,          ///< not above 0
+        sample_time,       ///< does not increase
+        unknown_revision,  ///< got, expected: the frames', the newest described of that epoch
+        no_description,    ///< of that epoch
+        sequence_restart,  ///< got, expected: the frame's, the newest handled; a restart needs a new epoch
+        value,             ///< got: the axis; not finite, or beyond its stated range
+    };
+    struct Complaint {
+        Fault fault = Fault::none;
+        Identity identity;
+        std::uint64_t got = 0;
+        std::uint64_t expected = 0;
+        const char* why = "";  ///< of a description
+    };
+
     struct Accepted {
         SensorFrame frame;
         bool new_epoch = false;        ///< the first frame of its epoch
@@ -59,6 +79,10 @@ public:
     /// Epoch of the foreign publisher seen last; 0 = none yet.
     std::uint64_t foreign_epoch() const { return foreign_epoch_; }
 
+    /// What was wrong last; counted by complaints().
+    const Complaint& complaint() const { return complaint_; }
+    std::uint64_t complaints() const { return complaints_; }
+
     /// What is wrong with a description, or nothing.
     static const char* problem_of(const ClusterDescription& description);
 
@@ -66,6 +90,8 @@ private:
     static constexpr std::size_t waiting_capacity = 64;
     static constexpr std::size_t remembered_descriptions = 4;
 
+    void complain(const Complaint& complaint);
+    void look_at_waiting(std::int64_t now_ns);
     bool order(const SensorFrame& frame, std::int64_t now_ns);
     const ClusterDescription* description_for(const SensorFrame& frame) const;
     bool clean(SensorFrame& frame, const ClusterDescription& description);
@@ -88,6 +114,10 @@ private:
     std::uint64_t last_handled_epoch_ = 0;
     std::uint64_t foreign_epoch_ = 0;
     double interval_s_ = 0;
+    Complaint complaint_;
+    std::uint64_t complaints_ = 0;
+    std::int64_t waiting_since_ns_ = 0;
+    std::uint32_t older_in_a_row_ = 0;
 };
 
 }  // namespace quorient::runtime

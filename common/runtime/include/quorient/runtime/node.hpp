@@ -39,8 +39,8 @@ public:
     /// One event: published, latched for late joiners, and logged.
     void report(EventCode code, Severity severity, Identity identity, std::uint32_t axes, std::string_view text, std::uint64_t request = 0);
 
-    /// As report(), but at most once a second for each code.
-    void report_throttled(EventCode code, Severity severity, Identity identity, std::uint32_t axes, std::string_view text);
+    /// As report(), but at most once a second for each code. @returns whether it was told now.
+    bool report_throttled(EventCode code, Severity severity, Identity identity, std::uint32_t axes, std::string_view text);
 
     /// Tells the new state at once.
     void set_state(ServiceState state);
