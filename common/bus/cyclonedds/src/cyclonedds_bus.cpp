@@ -1,5 +1,6 @@
 #include "quorient/bus/cyclonedds_bus.hpp"
 
+#include "ros2.hpp"
 #include "types.hpp"
 
 #include <dds/dds.h>
@@ -99,13 +100,14 @@ Transport transport_of(dds_entity_t endpoint)
 
 class CycloneWriter final : public Writer {
 public:
-    CycloneWriter(Entity writer, std::size_t size)
-        : writer_(std::move(writer)), size_(size), loans_(dds_is_loan_available(writer_.handle()))
+    CycloneWriter(Entity writer, TypeId type, std::size_t size)
+        : writer_(std::move(writer)), type_(type), size_(size), loans_(dds_is_loan_available(writer_.handle()))
     {
     }
 
     bool write(const void* message) override
     {
+        if (cyclonedds::is_ros2(type_)) return cyclonedds::write_ros2(type_, writer_.handle(), message);
         if (!loans_) return dds_write(writer_.handle(), message) == DDS_RETCODE_OK;
         void* sample = nullptr;
         if (dds_loan_sample(writer_.handle(), &sample) != DDS_RETCODE_OK) return false;
@@ -126,16 +128,18 @@ public:
 
 private:
     Entity writer_;
+    TypeId type_;
     std::size_t size_;
     bool loans_;
 };
 
 class CycloneReader final : public Reader {
 public:
-    explicit CycloneReader(Entity reader) : reader_(std::move(reader)) {}
+    CycloneReader(Entity reader, TypeId type) : reader_(std::move(reader)), type_(type) {}
 
     bool take(void* message) override
     {
+        if (cyclonedds::is_ros2(type_)) return cyclonedds::take_ros2(type_, reader_.handle(), message);
         dds_sample_info_t info{};
         void* samples[1] = {message};
         while (dds_take(reader_.handle(), samples, &info, 1, 1) == 1) {
@@ -155,6 +159,7 @@ public:
 
 private:
     Entity reader_;
+    TypeId type_;
 };
 
 class CycloneBus final : public Bus {
@@ -179,7 +184,7 @@ private:
     {
         const auto qos = to_qos(topic.qos, &options);
         return std::make_unique<CycloneWriter>(
-            checked(dds_create_writer(participant_.handle(), topic_of(topic), qos.get(), nullptr), topic.name), topic.size);
+            checked(dds_create_writer(participant_.handle(), topic_of(topic), qos.get(), nullptr), topic.name), topic.type, topic.size);
     }
 
     std::unique_ptr<Reader> make_reader(const TopicSpec& topic) override
@@ -189,7 +194,7 @@ private:
         const auto condition = dds_create_readcondition(reader.handle(), DDS_ANY_STATE);
         if (condition < 0 || dds_waitset_attach(waitset_.handle(), condition, 0) < 0)
             throw Error(fmt::format("Cyclone DDS: {}: cannot wait for data", topic.name));
-        return std::make_unique<CycloneReader>(std::move(reader));
+        return std::make_unique<CycloneReader>(std::move(reader), topic.type);
     }
 
     dds_entity_t topic_of(const TopicSpec& spec)

@@ -1,6 +1,7 @@
 #include "types.hpp"
 
 #include "quorient_msgs.h"
+#include "ros2.hpp"
 
 #include <array>
 #include <cstddef>
@@ -226,6 +227,7 @@ QUORIENT_SAME(quorient_msgs_FaultCommand, FaultCommand, padding, padding);
 
 const dds_topic_descriptor_t& descriptor_of(TypeId type)
 {
+    if (is_ros2(type)) return ros2_descriptor_of(type);
     static const std::array<const dds_topic_descriptor_t*, type_count> descriptors{
         &quorient_msgs_ClusterDescription_desc, &quorient_msgs_SensorFrame_desc,   &quorient_msgs_TruthState_desc,
         &quorient_msgs_FaultVerdict_desc,       &quorient_msgs_AttitudeState_desc, &quorient_msgs_VoterOutput_desc,

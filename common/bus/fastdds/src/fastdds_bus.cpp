@@ -1,6 +1,7 @@
 #include "quorient/bus/fastdds_bus.hpp"
 
 #include "quorient/bus/interfaces.hpp"
+#include "ros2.hpp"
 #include "types.hpp"
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
@@ -73,8 +74,8 @@ void apply(const Qos& qos, const Settings& settings, EndpointQos& endpoint)
 
 class FastWriter final : public Writer {
 public:
-    FastWriter(dds::Publisher* publisher, dds::DataWriter* writer, dds::TypeSupport type, std::size_t size, Transport transport)
-        : publisher_(publisher), writer_(writer), type_(std::move(type)), sample_(type_.create_data()), size_(size), transport_(transport)
+    FastWriter(dds::Publisher* publisher, dds::DataWriter* writer, dds::TypeSupport type, const TopicSpec& topic, Transport transport)
+        : publisher_(publisher), writer_(writer), type_(std::move(type)), sample_(type_.create_data()), topic_(topic), transport_(transport)
     {
     }
     ~FastWriter() override
@@ -85,7 +86,8 @@ public:
 
     bool write(const void* message) override
     {
-        std::memcpy(sample_, message, size_);
+        if (fastdds::is_ros2(topic_.type)) fastdds::ros2_to_vendor(topic_.type, message, sample_);
+        else std::memcpy(sample_, message, topic_.size);
         return writer_->write(sample_);
     }
 
@@ -106,20 +108,20 @@ private:
     dds::DataWriter* writer_;
     dds::TypeSupport type_;
     void* sample_;
-    std::size_t size_;
+    TopicSpec topic_;
     Transport transport_;
 };
 
 class FastReader final : public Reader {
 public:
-    FastReader(dds::Subscriber* subscriber, dds::DataReader* reader, dds::WaitSet& waitset, dds::TypeSupport type, std::size_t size,
+    FastReader(dds::Subscriber* subscriber, dds::DataReader* reader, dds::WaitSet& waitset, dds::TypeSupport type, const TopicSpec& topic,
                Transport transport)
         : subscriber_(subscriber),
           reader_(reader),
           waitset_(waitset),
           type_(std::move(type)),
           sample_(type_.create_data()),
-          size_(size),
+          topic_(topic),
           transport_(transport)
     {
         reader_->get_statuscondition().set_enabled_statuses(dds::StatusMask::data_available());
@@ -137,7 +139,8 @@ public:
         dds::SampleInfo info;
         while (reader_->take_next_sample(sample_, &info) == ReturnCode_t::RETCODE_OK) {
             if (!info.valid_data) continue;
-            std::memcpy(message, sample_, size_);
+            if (fastdds::is_ros2(topic_.type)) fastdds::ros2_from_vendor(topic_.type, sample_, message);
+            else std::memcpy(message, sample_, topic_.size);
             return true;
         }
         return false;
@@ -159,7 +162,7 @@ private:
     dds::WaitSet& waitset_;
     dds::TypeSupport type_;
     void* sample_;
-    std::size_t size_;
+    TopicSpec topic_;
     Transport transport_;
 };
 
@@ -205,7 +208,7 @@ private:
         auto [type, entity] = topic_of(topic);
         auto* writer = publisher_->create_datawriter(entity, qos);
         if (!writer) throw Error(fmt::format("Fast DDS: cannot write {}", topic.name));
-        return std::make_unique<FastWriter>(publisher_, writer, type, topic.size, settings_.transport);
+        return std::make_unique<FastWriter>(publisher_, writer, type, topic, settings_.transport);
     }
 
     std::unique_ptr<Reader> make_reader(const TopicSpec& topic) override
@@ -221,7 +224,7 @@ private:
         auto [type, entity] = topic_of(topic);
         auto* reader = subscriber_->create_datareader(entity, qos);
         if (!reader) throw Error(fmt::format("Fast DDS: cannot read {}", topic.name));
-        return std::make_unique<FastReader>(subscriber_, reader, waitset_, type, topic.size, settings_.transport);
+        return std::make_unique<FastReader>(subscriber_, reader, waitset_, type, topic, settings_.transport);
     }
 
     std::pair<dds::TypeSupport, dds::Topic*> topic_of(const TopicSpec& spec)

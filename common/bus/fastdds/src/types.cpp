@@ -1,6 +1,7 @@
 #include "types.hpp"
 
 #include "quorient_msgsPubSubTypes.h"
+#include "ros2.hpp"
 
 #include <stdexcept>
 
@@ -40,6 +41,9 @@ eprosima::fastdds::dds::TypeSupport type_support_of(TypeId type)
             return make<quorient_msgs::ServiceStatusPubSubType, ServiceStatus>();
         case TypeId::fault_command:
             return make<quorient_msgs::FaultCommandPubSubType, FaultCommand>();
+        case TypeId::ros2_imu:
+        case TypeId::ros2_diagnostics:
+            return ros2_type_support_of(type);
     }
     throw std::logic_error("no such type of the IDL");
 }

@@ -16,7 +16,8 @@
 
 namespace quorient::bus {
 
-/// The types of the IDL. VoterOutput and VotedAttitude differ in their keys alone and share one plain struct.
+/// The types of the IDL, and behind them those of ROS 2 (ros2.hpp). VoterOutput and VotedAttitude differ in their keys alone and share one
+/// plain struct.
 enum class TypeId : std::size_t {
     cluster_description,
     sensor_frame,
@@ -28,8 +29,10 @@ enum class TypeId : std::size_t {
     health_event,
     service_status,
     fault_command,
+    ros2_imu,
+    ros2_diagnostics,
 };
-inline constexpr std::size_t type_count = 10;
+inline constexpr std::size_t type_count = 10;  ///< of the IDL
 
 /// A topic as a vendor's bus sees it.
 struct TopicSpec {
