@@ -87,7 +87,7 @@ bool ParityFdi::prepare(const ClusterDescription& description)
     if (!made) {
         node_.report(EventCode::rejected_input, Severity::fatal, {description.epoch, 0}, 0, made.error());
         // Whoever publishes this may mend it; a method that does not fit the first sound cluster is the system file's mistake.
-        const bool mendable = monitor_ || !cluster;
+        const bool mendable = monitor_ || (!settings_.observers && !geometry::make_cluster(description));
         if (!mendable) node_.loop().quit(2);
         monitor_.reset();
         return mendable;

@@ -3,30 +3,46 @@
 #include "quorient/messages/cluster_description.hpp"
 #include "quorient/messages/sensor_frame.hpp"
 #include "quorient/messages/truth_state.hpp"
+#include "quorient/runtime/event_loop.hpp"
 #include "quorient/simulation/faults.hpp"
 #include "quorient/system/system.hpp"
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 
 namespace quorient::sensor {
 
-enum class Advance { frame, nothing, end };
+enum class Advance { frame, nothing, not_yet, end };
 
-/// Where frames come from: a simulated instrument or a log. Sequences may jump forward, never back.
+/// What a source met and an operator should know.
+struct Notice {
+    Severity severity = Severity::info;
+    AxisMask axes = 0;
+    std::string text;
+};
+
+/// Where frames come from: a simulated instrument, a log, other nodes. Sequences may jump forward, never back.
 class FrameSource {
 public:
     virtual ~FrameSource() = default;
 
+    /// Where the source listens to other nodes: called once, before anything else.
+    virtual void attach(bus::Bus&, runtime::EventLoop&) {}
+
     /// Complete, with epoch and revision.
     virtual const ClusterDescription& description() const = 0;
 
-    /// The frame of this sequence with faults applied, and the truth at its end. `nothing`: this sequence was lost in the log.
+    /// The frame of this sequence with faults applied, and the truth at its end. `nothing`: this sequence was lost in the log;
+    /// `not_yet`: the first frame cannot begin, ask again.
     virtual Advance advance_to(std::uint64_t sequence, SensorFrame& frame, TruthState& truth) = 0;
 
     virtual simulation::FaultInjector& faults() = 0;
+
+    /// What is new to tell; asked until there is nothing.
+    virtual std::optional<Notice> notice() { return std::nullopt; }
 
     /// What was met so far that an operator should know (refused records of a log); empty if nothing.
     virtual std::string remarks() const { return {}; }

@@ -224,6 +224,7 @@ tl::expected<std::unique_ptr<FrameSource>, std::string> make_log_source(const sy
 tl::expected<std::unique_ptr<FrameSource>, std::string> make_source(const system::SensorSettings& settings, std::uint64_t epoch)
 {
     if (settings.source.log) return make_log_source(settings, epoch);
+    if (settings.source.ros2) return make_ros2_source(settings, epoch);
     if (settings.source.vessel) return make_vessel_source(settings, epoch);
     return make_simulation_source(settings, epoch);
 }

@@ -36,6 +36,7 @@ SensorPublisher::SensorPublisher(const system::SensorSettings& settings, std::un
         bus::topics::frame.spec.name, [this] { return frames_.status(); }, true);
     loop.on(bus.subscribe(bus::topics::status), [this](const ServiceStatus& status) { on_status(status); });
     loop.on(bus.subscribe(bus::topics::command), [this](const FaultCommand& command) { on_command(command); });
+    source_->attach(bus, loop);
     descriptions_.publish(source_->description());
     node_.set_state(ServiceState::ready);
     wait_timer_.set(loop.clock().steady_ns() + static_cast<std::int64_t>(settings.wait_s * 1e9));
@@ -97,9 +98,16 @@ void SensorPublisher::tick()
 bool SensorPublisher::publish(std::uint64_t sequence)
 {
     const auto arrival = node_.clock().steady_ns();
-    switch (source_->advance_to(sequence, frame_, truth_)) {
+    const auto advance = source_->advance_to(sequence, frame_, truth_);
+    while (const auto notice = source_->notice())
+        node_.report(EventCode::rejected_input, notice->severity, identity_of(frame_), notice->axes, notice->text);
+    switch (advance) {
         case Advance::end:
             return false;
+        case Advance::not_yet:
+            start_ns_ = arrival - static_cast<std::int64_t>(sequence) * interval_ns_;  // the same sequence, an interval later
+            --next_;
+            return true;
         case Advance::nothing:
             return true;
         case Advance::frame:

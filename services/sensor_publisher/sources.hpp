@@ -9,6 +9,8 @@ std::unique_ptr<FrameSource> make_simulation_source(const system::SensorSettings
 
 std::unique_ptr<FrameSource> make_vessel_source(const system::SensorSettings& settings, std::uint64_t epoch);
 
+std::unique_ptr<FrameSource> make_ros2_source(const system::SensorSettings& settings, std::uint64_t epoch);
+
 tl::expected<std::unique_ptr<FrameSource>, std::string> make_log_source(const system::SensorSettings& settings, std::uint64_t epoch);
 
 }  // namespace quorient::sensor

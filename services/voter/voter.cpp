@@ -51,6 +51,7 @@ VoterService::VoterService(const system::VoterProcess& settings, bus::Bus& bus, 
         if (brain_.may_own()) voted_.assert_liveliness();
     });
     loop.every(readiness_period_ns, [this] { look_at_readiness(); });
+    if (settings.ros2) ros2_.emplace(*settings.ros2, settings.voting, bus, loop);
     drain();
 }
 

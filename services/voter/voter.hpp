@@ -3,6 +3,9 @@
 #include "quorient/runtime/node.hpp"
 #include "quorient/system/system.hpp"
 #include "quorient/voting/voter.hpp"
+#include "ros2_output.hpp"
+
+#include <optional>
 
 namespace quorient::voter {
 
@@ -26,6 +29,7 @@ private:
     voting::Voter brain_;
     voting::Output output_;
     std::int64_t arrival_ns_ = 0;
+    std::optional<Ros2Output> ros2_;
 };
 
 }  // namespace quorient::voter

@@ -1,5 +1,6 @@
 #include "parse_bus.hpp"
 #include "parse_detector.hpp"
+#include "parse_ros2.hpp"
 #include "parse_source.hpp"
 #include "quorient/system/system.hpp"
 
@@ -207,6 +208,7 @@ tl::expected<System, std::string> load(const std::string& file, const Overrides&
     parse_sensor(root.section("sensor"), system, base, overrides);
     parse_lanes(root, system, base, overrides);
     parse_voters(root, system, base, overrides);
+    parse_ros2_output(root, system);
     parse_expectations(root.section("expect"), system.expectations);
     if (!system.has_attitude() && (system.expectations.no_gap || system.expectations.final_error_rad))
         root.problem("expect", "a vessel's rates give no attitude: no_gap and final_error_rad cannot be met");

@@ -1,5 +1,6 @@
 #include "parse_source.hpp"
 
+#include "parse_ros2.hpp"
 #include "parse_vessel.hpp"
 #include "quorient/attitude/levelling.hpp"
 #include "quorient/geometry/layouts.hpp"
@@ -222,7 +223,8 @@ void parse_source(Section source, System& system)
     source.number("speed", system.sensor.source.speed, runtime::above_zero);
     if (kind == "log") parse_log(source, system);
     else if (kind == "simulation") parse_simulation(source, system);
-    else source.problem("kind", fmt::format("unknown source '{}'; known are simulation and log", kind));
+    else if (kind == "ros2_imu") parse_ros2_source(source, system);
+    else source.problem("kind", fmt::format("unknown source '{}'; known are simulation, log and ros2_imu", kind));
 
     auto& cluster = system.sensor.cluster;
     if (kind == "simulation") {

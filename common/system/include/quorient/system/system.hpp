@@ -38,9 +38,24 @@ struct LogSettings {
     std::optional<double> to_s;
 };
 
+/// One IMU of a robot, heard as sensor_msgs/Imu.
+struct Ros2ImuSettings {
+    std::string topic;  ///< as DDS knows it
+    std::string name;
+    Eigen::Matrix3d mounting = Eigen::Matrix3d::Identity();  ///< IMU frame -> body frame
+    Eigen::Vector3d position_m = Eigen::Vector3d::Zero();    ///< in the body frame
+};
+
+/// Several IMUs as one cluster.
+struct Ros2SourceSettings {
+    std::vector<Ros2ImuSettings> imus;
+    double skew_s = 0.02;  ///< how far an IMU's stamps may be from those of the others, and how much later than them frames go out
+};
+
 struct SourceSettings {
     simulation::Scenario scenario;  ///< motion, rate, noise, faults; of a log only the faults and the seed count
     std::optional<LogSettings> log;
+    std::optional<Ros2SourceSettings> ros2;
     std::optional<simulation::VesselScenario> vessel;  ///< in place of the scenario, of which then only the faults count
     double speed = 1;                                  ///< times real time
 };
@@ -76,9 +91,19 @@ struct IntegratorProcess {
     attitude::IntegratorSettings integration;
 };
 
+/// The voted attitude for ROS 2.
+struct Ros2OutputSettings {
+    std::string imu = "rt/imu/data";  ///< as DDS knows it
+    std::string diagnostics = "rt/diagnostics";
+    std::string frame_id = "base_link";
+    std::uint32_t every = 1;   ///< n-th frame
+    bool sample_time = false;  ///< stamps of the instrument's own clock in place of the host's
+};
+
 struct VoterProcess {
     ProcessSettings process;
     voting::VoterSettings voting;
+    std::optional<Ros2OutputSettings> ros2;
 };
 
 /// What a run must show; `quorient launch` checks it against the simulator's truth and says so in its exit code.
