@@ -84,13 +84,13 @@ class InteropTest(ProcessTest):
         self.processes.append(process)
         return process, log
 
-    def start_services(self, configuration, *arguments):
-        """Every process of a system file but its sensor. @returns {name: (process, log)}."""
+    def start_services(self, configuration, *arguments, sensor=False):
+        """The processes of a system file of three lanes and two voters. @returns {name: (process, log)}."""
         voters = [("quorient-voter", f"voter-{i}") for i in (1, 2)]
         lanes = [(f"quorient-{kind}", f"{kind}-{lane}") for lane in "abc" for kind in ("attitude", "fdi")]
         return {
             name: self.start_logged(name, BIN / program, configuration, "--name", name, "--domain", self.domain, *arguments)
-            for program, name in voters + lanes
+            for program, name in voters + lanes + [("quorient-sensor", "sensor")] * sensor
         }
 
     def echo(self, topic, count, *arguments, timeout=10):

@@ -33,7 +33,8 @@ static dds_entity_t writer_of(dds_entity_t participant, const dds_topic_descript
     dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
     dds_qset_durability(qos, latched ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
     dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, latched ? 1 : 64);
-    const dds_entity_t writer = made(dds_create_writer(participant, made(dds_create_topic(participant, type, name, NULL, NULL), name), qos, NULL), name);
+    const dds_entity_t writer =
+        made(dds_create_writer(participant, made(dds_create_topic(participant, type, name, NULL, NULL), name), qos, NULL), name);
     dds_delete_qos(qos);
     return writer;
 }
@@ -67,10 +68,12 @@ int main(int argc, char** argv)
 #define MISTAKE(name) (strcmp(mistake, name) == 0)
     signal(SIGTERM, on_signal);
     const dds_domainid_t domain = (dds_domainid_t)atoi(argv[1]);
-    made(dds_create_domain(domain, "<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"lo\" multicast=\"true\"/></Interfaces>"
-                                   "</General><Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>60"
-                                   "</MaxAutoParticipantIndex></Discovery><Internal><GenerateKeyhash>true</GenerateKeyhash></Internal>"
-                                   "</Domain></CycloneDDS>"), "domain");
+    made(dds_create_domain(domain,
+                           "<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"lo\" multicast=\"true\"/></Interfaces>"
+                           "</General><Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>60"
+                           "</MaxAutoParticipantIndex></Discovery><Internal><GenerateKeyhash>true</GenerateKeyhash></Internal>"
+                           "</Domain></CycloneDDS>"),
+         "domain");
     const dds_entity_t participant = made(dds_create_participant(domain, NULL, NULL), "participant");
     const dds_entity_t descriptions = writer_of(participant, &quorient_msgs_ClusterDescription_desc, "quorient/cluster", 1);
     const dds_entity_t frames = writer_of(participant, &quorient_msgs_SensorFrame_desc, "quorient/frame", 0);

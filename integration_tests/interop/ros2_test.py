@@ -1,0 +1,214 @@
+#!/usr/bin/env python3
+"""ROS 2 on the wire, with plain DDS nodes in ROS 2's place: what our voters write is heard, what IMUs write is integrated."""
+import json
+import math
+import re
+import shutil
+import signal
+import subprocess
+import unittest
+
+from foreign import BIN, HERE, InteropTest, angle, build, conjugate, product
+from harness import CONFIGURATIONS
+
+IMU_LINE = re.compile(
+    r"(\S+) (\S*) q (\S+) (\S+) (\S+) (\S+) covariance (\S+) rate (\S+) (\S+) (\S+) covariance (\S+) acceleration covariance (\S+)"
+)
+PROFILES = ("sensor-data", "default")
+VENDORS = ("cyclonedds", "fastdds")
+
+
+class Imu:
+    def __init__(self, line):
+        found = IMU_LINE.fullmatch(line)
+        assert found, f"not an IMU message: {line!r}"
+        second, fraction = found.group(1).split(".")
+        self.stamp_ns = int(second) * 10**9 + int(fraction)
+        self.frame_id = found.group(2)
+        self.attitude = [float(found.group(i)) for i in range(3, 7)]
+        self.orientation_variance, *rate, self.rate_variance, self.acceleration_variance = map(float, found.groups()[6:])
+        self.rate = rate
+
+
+def imus(log):
+    return [Imu(line) for line in log.read_text().split("\n")[:-1]]
+
+
+class Ros2Test(InteropTest):
+    def node(self, vendor):
+        return build(HERE / f"ros2_node_{vendor}", f"ros2_node_{vendor}")
+
+    def read(self, vendor, what, topic, profile):
+        return self.start_logged(f"{what}-{vendor}-{profile}", self.node(vendor), self.domain, what, topic, profile)[1]
+
+    def start_pipeline(self, configuration, *settings):
+        arguments = [argument for setting in settings for argument in ("--set", setting)]
+        return self.start_services(configuration, *arguments, sensor=True)
+
+    def echo_logged(self, topic):
+        return self.start_logged(f"echo-{topic}", *self.command("quorient", "echo", topic, "--json", "--domain", self.domain))[1]
+
+    def whole(self, log):
+        return [json.loads(line) for line in log.read_text().split("\n")[:-1]]
+
+
+class Out(Ros2Test):
+    def start_demo(self):
+        return self.start_pipeline(
+            CONFIGURATIONS / "demo.yaml", "source.duration_s=60", "source.faults=['axis=1,kind=scale,value=0.8,start=2']",
+            "ros2={imu: /imu/data, frame_id: gyros, every: 4, stamp: sample}",
+        )
+
+    def test_voted_attitude_is_heard_in_both_profiles_by_both_vendors_from_one_voter_at_a_time(self):
+        truths = self.echo_logged("truth")
+        heard = {(v, p): self.read(v, "imu", "rt/imu/data", p) for v in VENDORS for p in PROFILES}
+        diagnostics = {v: self.read(v, "diagnostics", "rt/diagnostics", "default") for v in VENDORS}
+        services = self.start_demo()
+        for reader, log in heard.items():
+            self.eventually(lambda: len(imus(log)) > 200, f"200 messages at {reader}", timeout=30)
+        for vendor, log in diagnostics.items():
+            self.eventually(lambda: "|quorient: axis 1 (G2)|isolated|unit 1" in log.read_text(), f"the isolated axis in {vendor}'s diagnostics")
+            for line in ("0|quorient: axis 0 (G1)|in use|", "0|quorient: voter 1|owns the output|", "0|quorient: voter 2|stands by|"):
+                self.assertIn(line, log.read_text())
+        if shutil.which("tshark"):
+            self.assert_tshark_names_the_topics()
+        truth = {sample["sample_time_ns"]: sample for sample in self.whole(truths)}
+        for (vendor, profile), log in heard.items():
+            with self.subTest(vendor=vendor, profile=profile):
+                self.assert_true(imus(log), truth)
+        self.hand_over(services, heard, diagnostics)
+
+    def assert_true(self, messages, truth):
+        compared = [(imu, truth[imu.stamp_ns]) for imu in messages if imu.stamp_ns in truth]
+        self.assertGreater(len(compared), 150)
+        for imu, true in compared:
+            self.assertEqual(imu.frame_id, "gyros")
+            self.assertEqual(true["sequence_number"] % 4, 0, "every fourth frame")
+            self.assertLess(angle(imu.attitude, true["attitude"]), 1e-3)  # the few frames until the fault is isolated
+            self.assertGreater(imu.orientation_variance, 0)
+            self.assertEqual(imu.acceleration_variance, -1)
+        late = [(imu, true) for imu, true in compared if true["sequence_number"] > 420]
+        self.assertLess(max(angle(imu.attitude, true["attitude"]) for imu, true in late), 3e-6)
+        # The rate is a difference of quantised angles: five of its own standard deviations, and the change within an interval.
+        for imu, true in late:
+            allowed = 5 * math.sqrt(imu.rate_variance) + 1e-3
+            self.assertLess(max(abs(a - b) for a, b in zip(imu.rate, true["rate_rad_s"])), allowed)
+
+    def hand_over(self, services, heard, diagnostics):
+        before = {reader: len(imus(log)) for reader, log in heard.items()}
+        services["voter-1"][0].kill()
+        for vendor, log in diagnostics.items():
+            self.eventually(lambda: "0|quorient: voter 2|owns the output|" in log.read_text(), f"voter 2 writes diagnostics to {vendor}")
+        for reader, log in heard.items():
+            self.eventually(lambda: len(imus(log)) > before[reader] + 50, f"messages go on at {reader}")
+            stamps = [imu.stamp_ns for imu in imus(log)]
+            twice = len(stamps) - len(set(stamps))
+            # Each hand-over may send a few frames twice; two voters at a time would send all of them twice.
+            self.assertLess(twice, 0.1 * len(stamps))
+
+    def assert_tshark_names_the_topics(self):
+        file = self.run_directory / "capture.pcapng"
+        file.touch()
+        file.chmod(0o666)  # the capture may run as another user
+        # Discovery goes to even ports [RTPS 9.6.1.1]; the data would be far more.
+        ports = f"udp dst portrange {7400 + 250 * self.domain}-{7400 + 250 * self.domain + 80} and udp[3] & 1 = 0"
+        tshark = subprocess.Popen(["tshark", "-i", "lo", "-f", ports, "-w", file], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.processes.append(tshark)
+        if "permission" in (tshark.stderr.readline() + tshark.stderr.readline()).lower():
+            return
+        fields = ["-T", "fields", "-e", "rtps.param.topicName", "-e", "rtps.param.typeName"]
+        names = {"rt/imu/data", "sensor_msgs::msg::dds_::Imu_", "rt/diagnostics", "diagnostic_msgs::msg::dds_::DiagnosticArray_"}
+
+        def named():
+            # Discovery speaks the names to whoever joins.
+            self.run_program("quorient", "echo", "status", "--count", 5, "--timeout", 3, "--domain", self.domain)
+            decoded = subprocess.run(["tshark", "-r", file, "-Y", "rtps.param.topicName", *fields], capture_output=True, text=True, timeout=60)
+            return names <= set(decoded.stdout.replace(",", "\t").split())
+
+        self.eventually(named, f"tshark reads {names}", timeout=30)
+        tshark.terminate()
+
+    def test_nothing_is_written_for_ros_2_unless_asked_for(self):
+        self.start_pipeline(CONFIGURATIONS / "demo.yaml", "source.duration_s=20", "source.faults=[]")
+        log = self.read("cyclonedds", "imu", "rt/imu/data", "sensor-data")
+        self.eventually(lambda: any(voted["sequence_number"] > 300 for voted in self.echo("voter_output", 70)[-1:]), "the pipeline runs")
+        self.assertEqual(imus(log), [])
+
+
+ROBOT = """
+name: a robot's IMUs
+domain: 42
+dds: cyclonedds
+interface: lo
+unit: {id: 1, name: robot, initial_attitude: [1, 0, 0, 0]}
+source:
+  kind: ros2_imu
+  rate_hz: 100
+  skew_s: 0.1
+  noise_rad: 1.0e-6
+  imus:
+    - {topic: /imu_1/data, name: front}
+    - {topic: /imu_2/data, name: middle, rotation: [0.5, 0.5, 0.5, 0.5], position_m: [0.1, 0, 0]}
+    - {topic: /imu_3/data, name: rear, rotation: [0, 0, 0, 1], position_m: [-0.2, 0, 0.1]}
+    - {topic: /imu_4/data, name: top}
+lanes:
+  - {name: a, detector: {method: subset, instruments: true, max_faults: 1, pfa: 1.0e-9}}
+  - {name: b, dds: fastdds, detector: {method: subset, instruments: true, max_faults: 1, pfa: 1.0e-9}}
+  - {name: c, detector: {method: subset, instruments: true, max_faults: 1, pfa: 1.0e-9}}
+voters: [{name: voter-1}, {name: voter-2, dds: fastdds}]
+voting: {patience: 1, silence_intervals: 10}
+"""
+NORMAL = 2
+BODY_RATE = (0.1, 0.2, -0.3)
+ALL, MIDDLE, REAR = 0xFFF, 0b000000111000, 0b000111000000
+
+
+def turned(seconds):
+    rate = math.hypot(*BODY_RATE)
+    half = rate * seconds / 2
+    return [math.cos(half), *(component / rate * math.sin(half) for component in BODY_RATE)]
+
+
+class In(Ros2Test):
+    """One robot, one pipeline, each mistake of its second IMU in turn, then a real fault of the third."""
+
+    def test_a_faulty_imu_costs_its_own_axes_and_nothing_else(self):
+        configuration = self.write("robot.yaml", ROBOT)
+        events, frames, voted = (self.echo_logged(topic) for topic in ("event", "frame", "voter_output"))
+        robot, said = self.start_logged("robot", self.node("cyclonedds"), self.domain, "robot")
+        services = self.start_pipeline(configuration)
+        self.eventually(lambda: any(v["mode"] == NORMAL for v in self.whole(voted)), "the robot's attitude is voted on", timeout=30)
+
+        def told(words):
+            return [e for e in self.whole(events) if e["source_name"] == "sensor" and words in e["text"]]
+
+        for round_, words in enumerate(("silent", "its stamps are off", "its stamps are off", "duplicated"), 1):
+            since = len(told("middle"))
+            robot.send_signal(signal.SIGUSR1)  # silent, late, ahead, doubled
+            self.eventually(lambda: any(words in e["text"] for e in told("middle")[since:]), f"{words} ({round_})")
+            self.assertEqual({e["axes"] for e in told("middle")}, {MIDDLE})
+            robot.send_signal(signal.SIGUSR1)  # well
+            self.eventually(lambda: len(told("middle: measures again")) >= round_ and "again" in told("middle")[-1]["text"], f"well ({round_})")
+        robot.send_signal(signal.SIGUSR1)
+        self.eventually(lambda: any(v["isolated_mask"] & REAR == REAR for v in self.whole(voted)), "the third IMU's bias isolated")
+        self.all_alive(services)
+
+        masks = {frame["valid_mask"] for frame in self.whole(frames)}
+        self.assertEqual(masks, {ALL, ALL & ~MIDDLE}, "only the second IMU's axes are ever missing, and all three of them")
+        named = {v["isolated_mask"] for v in self.whole(voted)}
+        self.assertLessEqual(named, {0, MIDDLE, REAR, MIDDLE | REAR}, "who stays away long is left out, and no other but the biased one")
+        self.assert_attitude_is_true(self.whole(voted))
+        self.assertIn("biased", said.read_text())
+
+    def assert_attitude_is_true(self, voted):
+        good = [v for v in voted if v["mode"] == NORMAL]
+        first = good[0]
+        for sample in good:
+            since_s = (sample["sample_time_ns"] - first["sample_time_ns"]) * 1e-9
+            moved = product(conjugate(first["attitude"]), sample["attitude"])
+            # The noise is 1e-4 rad/s and does not add up; the bias counts for the few frames until it is isolated.
+            self.assertLess(angle(moved, turned(since_s)), 5e-4 if sample["isolated_mask"] or sample["suspect_mask"] else 2e-5)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
