@@ -14,6 +14,7 @@ namespace quorient::detector {
 namespace {
 
 constexpr std::int64_t readiness_period_ns = 20'000'000;
+constexpr unsigned most_unheard_looks = 100;  // 2 s, less than a publisher waits
 
 }  // namespace
 
@@ -41,9 +42,10 @@ ParityFdi::ParityFdi(const system::DetectorProcess& settings, bus::Bus& bus, run
 
 void ParityFdi::look_at_readiness()
 {
-    const bool is_heard = verdicts_.status().matched > 0 || settings_.observers;  // by its integrator, which a vessel has not
-    if (node_.state() == ServiceState::starting && intake_.described() && frames_->status().matched > 0 && is_heard)
-        node_.set_state(ServiceState::ready);
+    if (node_.state() != ServiceState::starting || !intake_.described() || frames_->status().matched == 0) return;
+    // A vessel has no integrator that surely reads its verdicts; a monitor that does is waited for.
+    const bool has_waited = settings_.observers && ++unheard_looks_ > most_unheard_looks;
+    if (verdicts_.status().matched > 0 || has_waited) node_.set_state(ServiceState::ready);
 }
 
 void ParityFdi::on_frame(const SensorFrame& frame)

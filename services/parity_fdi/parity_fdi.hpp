@@ -44,9 +44,10 @@ private:
     runtime::FrameIntake intake_;
     std::optional<fdi::FaultMonitor> monitor_;
     FaultVerdict last_;
-    bool adopting_ = true;  ///< until this detector's first judgement, or an order
-    Memory of_lane_;        ///< what the lane's integrator remembers of this detector's life before
-    Memory of_voters_;      ///< what a majority stands for: found while this detector was dead
+    unsigned unheard_looks_ = 0;  ///< at readiness, while nobody reads the verdicts
+    bool adopting_ = true;        ///< until this detector's first judgement, or an order
+    Memory of_lane_;              ///< what the lane's integrator remembers of this detector's life before
+    Memory of_voters_;            ///< what a majority stands for: found while this detector was dead
     std::int64_t arrival_ns_ = 0;
     std::uint64_t told_rejected_ = 0;
     std::uint64_t told_foreign_ = 0;
