@@ -112,6 +112,37 @@ TEST(VesselVerb, prints_csv_with_a_header)
     EXPECT_EQ(std::count(output.out.begin(), output.out.end(), '\n'), 4);
 }
 
+TEST(VesselVerb, prints_the_run_beside_the_recomputed_figures)
+{
+    const Output output = run("--table");
+    EXPECT_EQ(output.exit_code, 0) << output.error;
+    EXPECT_THAT(output.out, HasSubstr("K_a 1 2      2.88248337    2.88248337"));
+    EXPECT_THAT(output.out, testing::Not(HasSubstr("exceeded")));
+    int compared = 0;
+    std::istringstream text(output.out);
+    for (std::string line; std::getline(text, line);) {
+        if (line.size() < 2 || line.substr(line.size() - 2) != " %") continue;
+        ++compared;
+        const bool one_digit = line.find("8.0e-06") != std::string::npos || line.find("1.1e-05") != std::string::npos ||
+                               line.find("4.0e-06") != std::string::npos;
+        EXPECT_LT(std::abs(std::stod(line.substr(line.find_last_of("+-")))), one_digit ? 12.0 : 2.0) << line;
+    }
+    EXPECT_EQ(compared, 14);
+}
+
+TEST(VesselVerb, draws_the_papers_figures)
+{
+    const auto file = std::filesystem::path(testing::TempDir()) / "vessel_test.svg";
+    EXPECT_EQ(run("--scheme directional --plot " + file.string()).exit_code, 0);
+    std::ifstream stream(file);
+    const std::string svg{std::istreambuf_iterator<char>(stream), {}};
+    std::filesystem::remove(file);
+    for (const char* figure :
+         {"(paper 001, Fig. 4a)", "(Fig. 4b)", "observer of channel 0 (Fig. 5)", "observer of channel 1 (Fig. 5)", "(Fig. 6)"})
+        EXPECT_THAT(svg, HasSubstr(figure));
+    EXPECT_THAT(svg, HasSubstr("</svg>"));
+}
+
 TEST(VesselVerb, takes_a_plant_of_the_users_own)
 {
     const File file("plant: {A: [[-1, 0.5], [-0.3, -2]], B: [[0], [1]]}\nblind_poles: [[[-3, 1]]]\nthreshold: 1e-3\n");

@@ -139,7 +139,8 @@ void add_vessel(CLI::App& program)
         "  plant: {A: [[..]], B: [[..]], C: [[..]]}\n"
         "  directional_poles: [[along the fault, other], ..]     blind_poles: [[-3, -4]]     # a pair: [real, imaginary]\n"
         "  threshold: 1e-3     # or, instead: sigma: [2e-4], model_error: 0.05, false_alarm_probability: 1e-6\n\n"
-        "Example: the gains of the paper's two observers\n  quorient vessel --gains --scheme directional\n");
+        "Examples: the gains of the paper's two observers; the paper's figures\n  quorient vessel --gains --scheme directional\n"
+        "  quorient vessel --scheme directional --plot vessel.svg > vessel.csv\n");
     const auto options = std::make_shared<VesselOptions>();
     verb->add_option("--vessel", options->file, "YAML file of a vessel or any linear plant")->option_text("FILE");
     verb->add_option("--scheme", options->scheme, "directional or blind; blind where not given (--gains: both)")
@@ -149,7 +150,7 @@ void add_vessel(CLI::App& program)
     verb->add_option("--duration", options->duration_s, "s")->capture_default_str();
     verb->add_option("--noise", options->noise, "standard deviation of every sample, in the channel's unit")->capture_default_str();
     verb->add_option("--seed", options->seed, "of the noise")->capture_default_str();
-    verb->add_option("--plot", options->plot_file, "the run as a figure")->option_text("FILE.svg");
+    verb->add_option("--plot", options->plot_file, "the run as figures 4 to 6 of the paper")->option_text("FILE.svg");
     verb->add_flag("--gains", options->gains, "print A, B, C, every observer's gain and poles as JSON, instead");
     verb->add_flag("--table", options->table, "print the paper's run beside the figures recomputed from it: gains, window means, decisions")
         ->excludes("--gains", "--vessel", "--fault");
