@@ -4,6 +4,7 @@
 #include "quorient/geometry/redundancy.hpp"
 
 #include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -16,9 +17,17 @@ constexpr std::array<std::size_t, Accumulating::window_count> windows{1,  2,  3,
 /// A window is looked at this often in its own length: what is in between differs little.
 constexpr std::size_t looks_per_window = 8;
 
-/// An axis this close to its range may be beyond it; its frame and the next one (the sensor's filter remembers) are held out.
+/// An axis this close to its range may be beyond it …
 constexpr double saturation = 0.975;
-constexpr unsigned frames_held_out = 2;
+
+/// … by a standard deviation of this times its range.
+constexpr double excess = 0.5;
+
+/// From this statistic on every window is looked at in every frame.
+constexpr double alert_level = 0.7;
+
+/// Rounds of estimating a step and its beginning by turns.
+constexpr int onset_rounds = 6;
 
 /// A blow: in the frame in which a motion begins the acceleration is larger than its mean over the frame shows, its square by up to
 /// this (and one). Bounds the knocks between the poses of the MIMU4444 recordings.
@@ -28,7 +37,7 @@ constexpr double blow_excess = 16;
 constexpr double calming = 1.0 / 16;
 
 /// Share of the roughness that lowers a frame's weight: most frames are not the outliers that it stands for.
-constexpr double roughness_in_weight = 0.01;
+constexpr double roughness_in_weight = 0.03;
 
 constexpr double default_margin = 1.25;
 constexpr double default_false_alarms_per_hour = 0.1;
@@ -46,7 +55,8 @@ MotionNoise usual_motion_noise(const geometry::SensorCluster& cluster)
     return {.jitter_along_s = 0.0084 * cluster.interval_s,
             .jitter_across_s = 0.0046 * cluster.interval_s,
             .roughness_s = 0.028 * cluster.interval_s,
-            .rate_error = 2e-4,
+            .axes_error = 6e-4,
+            .rate_error = 1e-4,
             .bias_floor_rad_s = 0.16 * rate_sigma};
 }
 
@@ -66,7 +76,7 @@ tl::expected<std::unique_ptr<Accumulating>, std::string> Accumulating::make(cons
     if (!(cluster.interval_s > 0))
         return tl::unexpected(std::string("accumulating: false alarms are counted per hour, so the cluster's interval_s must be known"));
     for (const double figure :
-         {motion.jitter_along_s, motion.jitter_across_s, motion.roughness_s, motion.rate_error, motion.bias_floor_rad_s})
+         {motion.jitter_along_s, motion.jitter_across_s, motion.roughness_s, motion.axes_error, motion.rate_error, motion.bias_floor_rad_s})
         if (!(figure >= 0 && std::isfinite(figure)))
             return tl::unexpected(std::string("accumulating: the terms of the motion noise must be finite and at least 0"));
     std::unique_ptr<Accumulating> made(new Accumulating(settings, cluster, motion));
@@ -142,7 +152,8 @@ void Accumulating::exclude(AxisMask excluded)
 void Accumulating::reset()
 {
     size_ = 0;
-    held_out_ = 0;
+    near_range_ = 0;
+    near_range_before_ = 0;
     alert_ = false;
     wildness_ = 0;
     pending_.reset();
@@ -150,17 +161,18 @@ void Accumulating::reset()
 
 bool Accumulating::usable(const Measurement& measurement)
 {
-    if (held_out_ > 0) --held_out_;
+    near_range_before_ = near_range_;
+    near_range_ = 0;
     for (const Instrument& instrument : instruments_) {
         if (!compared(instrument)) continue;
         for (std::size_t i = 0; i < instrument.size; ++i) {
             const std::size_t axis = instrument.axis[i];
             if (!has_axis(measurement.valid, axis) || !std::isfinite(measurement.increment[axis])) return false;
             const double range = cluster_.range(static_cast<Eigen::Index>(axis)) * measurement.interval_s;
-            if (range > 0 && std::abs(measurement.increment[axis]) > saturation * range) held_out_ = frames_held_out;
+            if (range > 0 && std::abs(measurement.increment[axis]) > saturation * range) near_range_ |= axis_bit(axis);
         }
     }
-    return held_out_ == 0 && measurement.interval_s > 0;
+    return measurement.interval_s > 0;
 }
 
 Accumulating::Pending Accumulating::pending_of(const Measurement& measurement) const
@@ -168,6 +180,7 @@ Accumulating::Pending Accumulating::pending_of(const Measurement& measurement) c
     Pending frame;
     frame.sequence = measurement.identity.sequence;
     frame.interval_s = measurement.interval_s;
+    frame.saturated = near_range_ | near_range_before_;
     frame.body.setZero(3, static_cast<Eigen::Index>(instruments_.size()));
     double left = 0;
     for (std::size_t m = 0; m < instruments_.size(); ++m) {
@@ -181,6 +194,21 @@ Accumulating::Pending Accumulating::pending_of(const Measurement& measurement) c
     }
     frame.rate /= left;
     return frame;
+}
+
+Eigen::Matrix3d Accumulating::blindness(AxisMask saturated, double interval_s) const
+{
+    Eigen::Matrix3d blind = Eigen::Matrix3d::Zero();
+    for (const Instrument& instrument : instruments_) {
+        if (!compared(instrument) || (instrument.mask & saturated) == 0) continue;
+        for (std::size_t i = 0; i < instrument.size; ++i) {
+            if (!has_axis(saturated, instrument.axis[i])) continue;
+            const double unknown = excess * cluster_.range(static_cast<Eigen::Index>(instrument.axis[i])) * interval_s;
+            const Eigen::Vector3d along = unknown * instrument.body_from_axes.col(static_cast<Eigen::Index>(i));
+            blind += along * along.transpose();
+        }
+    }
+    return blind;
 }
 
 Eigen::Matrix3d Accumulating::motion_covariance(const Pending& frame, const Eigen::Vector3d& acceleration_after, double blow,
@@ -204,7 +232,9 @@ void Accumulating::take_in(const Pending& frame, const Eigen::Vector3d& accelera
     // Where the acceleration passes through zero the errors do not: they follow how wild the motion has been lately.
     wildness_ = std::max(squared * blow, wildness_ + (squared - wildness_) * calming);
     const double rough = h * h * wildness_;
-    const Eigen::Matrix3d weight = scale_ * (mean_covariance_ + motion_covariance(frame, acceleration_after, blow, rough)).inverse();
+    const Eigen::Matrix3d moving = motion_covariance(frame, acceleration_after, blow, rough) + blindness(frame.saturated, h);
+    const Eigen::Matrix3d weight = scale_ * (mean_covariance_ + moving).inverse();
+    const double largest = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>().computeDirect(weight, Eigen::EigenvaluesOnly).eigenvalues()(2);
     const double resting = weight.trace() / 3;
 
     const Totals& before = total(0);
@@ -213,8 +243,12 @@ void Accumulating::take_in(const Pending& frame, const Eigen::Vector3d& accelera
     now.weight = before.weight + weight;
     now.biased = before.biased + weight * h;
     now.turned = before.turned + weight * (frame.rate.norm() * h);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        const auto j = static_cast<std::size_t>(axis);
+        now.rotated[j] = before.rotated[j] + weight * (frame.rate(axis) * h);
+    }
     now.rest = before.rest + resting * resting;
-    now.roughness = resting * resting * rough;
+    now.roughness = largest * largest * rough;
     now.sequence = frame.sequence;
     next_ = (next_ + 1) % history_length;
     size_ = std::min(size_ + 1, history_length);
@@ -230,73 +264,89 @@ Eigen::Matrix3d Accumulating::common_covariance(std::size_t window) const
     double roughest = 0;
     for (std::size_t age = 0; age < window; ++age) roughest = std::max(roughest, total(age).roughness);
     const double outlier = motion_.roughness_s * motion_.roughness_s * roughest;
-    return scale_ * (newest.weight - oldest.weight) + constant * constant.transpose() + outlier * Eigen::Matrix3d::Identity();
+    Eigen::Matrix3d floors = constant * constant.transpose();
+    for (std::size_t j = 0; j < 3; ++j) {
+        const Eigen::Matrix3d rotated = motion_.axes_error * (newest.rotated[j] - oldest.rotated[j]);
+        floors += rotated * rotated.transpose();
+    }
+    return scale_ * (newest.weight - oldest.weight) + floors + outlier * Eigen::Matrix3d::Identity();
 }
 
-Accumulating::Finding Accumulating::examine(std::size_t window, const Limits& limits) const
+Accumulating::Contradiction Accumulating::Fit::contradiction(std::size_t instrument) const
+{
+    const Eigen::Matrix3d& own = information[instrument];
+    return {.u = own * (value[instrument] - fused), .q = own - own * covariance * own};
+}
+
+Accumulating::Fit Accumulating::fit(std::size_t window) const
 {
     const Totals& newest = total(0);
     const Totals& oldest = total(window);
     const Eigen::Matrix3d common = common_covariance(window);
-    const Eigen::Matrix3d weight = newest.weight - oldest.weight;
     const double rest = scale_ * scale_ * (newest.rest - oldest.rest);
 
-    std::array<Eigen::Matrix3d, max_instruments> information;
-    std::array<Eigen::Vector3d, max_instruments> value;
+    Fit fit;
+    fit.weight = newest.weight - oldest.weight;
     Eigen::Matrix3d total_information = Eigen::Matrix3d::Zero();
     Eigen::Vector3d total_value = Eigen::Vector3d::Zero();
     for (std::size_t m = 0; m < instruments_.size(); ++m) {
         if (!compared(instruments_[m])) continue;
         const auto column = static_cast<Eigen::Index>(m);
         const Eigen::Matrix3d own = mean_information_ * (instruments_[m].covariance - mean_covariance_) * mean_information_;
-        value[m] = newest.sum.col(column) - oldest.sum.col(column);
-        information[m] = (common + rest * own).inverse();
-        total_information += information[m];
-        total_value += information[m] * value[m];
+        fit.value[m] = newest.sum.col(column) - oldest.sum.col(column);
+        fit.information[m] = (common + rest * own).inverse();
+        total_information += fit.information[m];
+        total_value += fit.information[m] * fit.value[m];
     }
-    const Eigen::Matrix3d covariance = total_information.inverse();
-    const Eigen::Vector3d fused = covariance * total_value;
+    fit.covariance = total_information.inverse();
+    fit.fused = fit.covariance * total_value;
+    return fit;
+}
 
+Accumulating::Finding Accumulating::examine(std::size_t window, const Limits& limits) const
+{
+    const Fit windows_fit = fit(window);
     Finding finding;
     finding.window = window;
-    finding.limits = limits;
-    for (std::size_t m = 0; m < instruments_.size(); ++m) {
-        if (!compared(instruments_[m])) continue;
-        const Contradiction contradiction{.u = information[m] * (value[m] - fused),
-                                          .q = information[m] - information[m] * covariance * information[m]};
-        weigh(instruments_[m], contradiction, weight, limits, finding);
-    }
+    for (std::size_t m = 0; m < instruments_.size(); ++m)
+        if (compared(instruments_[m])) weigh(m, windows_fit, limits, finding);
     return finding;
 }
 
-void Accumulating::Finding::consider(double with_certainty, AxisMask axes)
+void Accumulating::Finding::consider(double with_certainty, AxisMask axes, const Hypothesis& what)
 {
     if (with_certainty > certainty) {
         second = certainty;
         runner_up = best;
         certainty = with_certainty;
         best = axes;
+        hypothesis = what;
     } else if (with_certainty > second) {
         second = with_certainty;
         runner_up = axes;
     }
 }
 
-void Accumulating::weigh(const Instrument& instrument, const Contradiction& contradiction, const Eigen::Matrix3d& weight,
-                         const Limits& limits, Finding& finding) const
+void Accumulating::weigh(std::size_t place, const Fit& fit, const Limits& limits, Finding& finding) const
 {
-    const auto& [u, q] = contradiction;
+    const Instrument& instrument = instruments_[place];
+    const auto [u, q] = fit.contradiction(place);
     double most = 0;
+    Hypothesis likeliest{.instrument = place};
     for (std::size_t i = 0; i < instrument.size; ++i) {
-        const Eigen::Vector3d direction = weight * instrument.body_from_axes.col(static_cast<Eigen::Index>(i));
+        const Eigen::Vector3d direction = fit.weight * instrument.body_from_axes.col(static_cast<Eigen::Index>(i));
         const double explained = std::pow(direction.dot(u), 2) / direction.dot(q * direction);
         const double certainty = std::sqrt(explained / limits.axis);
-        most = std::max(most, certainty);
-        if (!instruments_alone_) finding.consider(certainty, axis_bit(instrument.axis[i]));
+        const Hypothesis axis{.instrument = place, .axis = i};
+        if (!instruments_alone_) finding.consider(certainty, axis_bit(instrument.axis[i]), axis);
+        if (certainty <= most) continue;
+        most = certainty;
+        likeliest = axis;
     }
     if (!instruments_alone_) return;
-    const double explained = std::max(0.0, u.dot(q.inverse() * u));
-    finding.consider(std::max(most, std::sqrt(explained / limits.instrument)), instrument.mask);
+    const double whole = std::sqrt(std::max(0.0, u.dot(q.inverse() * u)) / limits.instrument);
+    if (whole > most) likeliest.axis.reset();
+    finding.consider(std::max(most, whole), instrument.mask, likeliest);
 }
 
 Accumulating::Finding Accumulating::most_certain()
@@ -307,23 +357,56 @@ Accumulating::Finding Accumulating::most_certain()
         const Finding finding = examine(windows[i], limits_[i]);
         if (finding.certainty > most.certainty) most = finding;
     }
-    alert_ = most.certainty > 1;
+    alert_ = most.certainty > alert_level;
     return most;
+}
+
+/// The constant error of the body vector, per frame, that explains the window best: E u = Q W step.
+Eigen::Vector3d Accumulating::step_over(std::size_t window, const Hypothesis& hypothesis) const
+{
+    const Fit windows_fit = fit(window);
+    const auto [u, q] = windows_fit.contradiction(hypothesis.instrument);
+    if (!hypothesis.axis) return windows_fit.weight.inverse() * q.inverse() * u;
+    const Eigen::Vector3d axis = instruments_[hypothesis.instrument].body_from_axes.col(static_cast<Eigen::Index>(*hypothesis.axis));
+    const Eigen::Vector3d direction = windows_fit.weight * axis;
+    return axis * (direction.dot(u) / direction.dot(q * direction));
+}
+
+/// Logarithm, against no step at all.
+double Accumulating::likelihood(const Eigen::Vector3d& step, std::size_t window, const Hypothesis& hypothesis) const
+{
+    const Fit windows_fit = fit(window);
+    const auto [u, q] = windows_fit.contradiction(hypothesis.instrument);
+    const Eigen::Vector3d error = windows_fit.weight * step;
+    return error.dot(u) - error.dot(q * error) / 2;
+}
+
+std::size_t Accumulating::likeliest_window(const Eigen::Vector3d& step, const Hypothesis& hypothesis) const
+{
+    std::size_t likeliest = 1;
+    double most = likelihood(step, 1, hypothesis);
+    const auto consider = [&](std::size_t window) {
+        const double value = likelihood(step, window, hypothesis);
+        if (value <= most) return;
+        most = value;
+        likeliest = window;
+    };
+    const std::size_t longest = std::min(size_ - 1, longest_window);
+    for (std::size_t window = 2; window <= longest; window += 1 + window / 16) consider(window);
+    const std::size_t around = likeliest / 16;
+    for (std::size_t window = likeliest - around; window <= std::min(longest, likeliest + around); ++window) consider(window);
+    return likeliest;
 }
 
 std::uint64_t Accumulating::onset_of(const Finding& finding) const
 {
-    std::size_t likeliest = finding.window;
-    double certainty = finding.certainty;
-    const std::size_t longest = std::min({size_ - 1, finding.window * 2, longest_window});
-    const std::size_t step = stride_of(finding.window);
-    for (std::size_t window = std::max<std::size_t>(1, finding.window / 2); window <= longest; window += step) {
-        const Finding other = examine(window, finding.limits);
-        if (other.best != finding.best || other.certainty <= certainty) continue;
-        certainty = other.certainty;
-        likeliest = window;
+    std::size_t window = finding.window;
+    for (int round = 0; round < onset_rounds; ++round) {
+        const std::size_t before = window;
+        window = likeliest_window(step_over(window, finding.hypothesis), finding.hypothesis);
+        if (window == before) break;
     }
-    return total(likeliest - 1).sequence;
+    return total(window - 1).sequence;
 }
 
 void Accumulating::assess(const Measurement& measurement, Assessment& assessment)

@@ -104,7 +104,9 @@ void AxisHealth::remember(const Measurement& measurement, std::size_t axis)
     if (!here) return;
 
     const double value = measurement.increment[axis];
-    const bool repeat = history.known && std::bit_cast<std::uint64_t>(value) == std::bit_cast<std::uint64_t>(history.last);
+    // Beyond its range a sound axis repeats its limit as long as the motion stays there: is_railed judges that.
+    const bool repeat = history.known && !is_near_range(measurement, axis) &&
+                        std::bit_cast<std::uint64_t>(value) == std::bit_cast<std::uint64_t>(history.last);
     if (repeat) {
         ++history.repeats;
         // Around a turning point an axis may truly come back to the value it had: then the others agree with it, and it lives.
@@ -132,7 +134,7 @@ AxisFault AxisHealth::judge(const Measurement& measurement, std::size_t axis) co
     if (!present(measurement, axis)) return AxisFault::none;
     const double limit = cluster_.range(static_cast<Eigen::Index>(axis)) * measurement.interval_s;
     if (limit > 0 && std::abs(measurement.increment[axis]) > beyond_range * limit) return AxisFault::out_of_range;
-    if (limit > 0 && is_railed(measurement, axis, limit)) return AxisFault::rail;
+    if (is_railed(measurement, axis)) return AxisFault::rail;
     if (has_axis(noisy_, axis) && is_frozen(history)) return history.last == 0 ? AxisFault::zero : AxisFault::frozen;
     return AxisFault::none;
 }
@@ -144,11 +146,17 @@ bool AxisHealth::is_frozen(const History& history) const
     return history.repeats * std::log((history.repeated + 1) / (history.seen + 2)) < improbable_run;
 }
 
-bool AxisHealth::is_railed(const Measurement& measurement, std::size_t axis, double limit) const
+bool AxisHealth::is_near_range(const Measurement& measurement, std::size_t axis) const
+{
+    const double limit = cluster_.range(static_cast<Eigen::Index>(axis)) * measurement.interval_s;
+    return limit > 0 && std::abs(measurement.increment[axis]) >= near_range * limit;
+}
+
+bool AxisHealth::is_railed(const Measurement& measurement, std::size_t axis) const
 {
     const History& history = history_[axis];
-    if (std::abs(measurement.increment[axis]) < near_range * limit) return false;
-    return history.is_predicted && std::abs(history.predicted) < others_range * limit;
+    const double limit = cluster_.range(static_cast<Eigen::Index>(axis)) * measurement.interval_s;
+    return is_near_range(measurement, axis) && history.is_predicted && std::abs(history.predicted) < others_range * limit;
 }
 
 }  // namespace quorient::fdi

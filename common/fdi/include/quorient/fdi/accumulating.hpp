@@ -19,7 +19,8 @@ struct MotionNoise {
     double jitter_along_s = 0;    ///< times |d omega/dt|: each instrument's sampling instants wander; along d omega/dt …
     double jitter_across_s = 0;   ///< … and across it; both independent between frames and between instruments
     double roughness_s = 0;       ///< times the lately largest |d omega/dt|: outliers, which a few frames of a window dominate
-    double rate_error = 0;        ///< times the angle turned through: misalignment and scale that calibration left, per axis
+    double axes_error = 0;        ///< times the rotation: misalignment and scale that calibration left; what turns back is taken back
+    double rate_error = 0;        ///< times the angle turned through, whichever way: errors of another law (asymmetry, rate squared)
     double bias_floor_rad_s = 0;  ///< constant error of each axis that calibration left
 };
 
@@ -31,27 +32,30 @@ MotionNoise usual_motion_noise(const geometry::SensorCluster& cluster);
 /// vectors are compared over several windows in parallel, as weighted sums of increments (parity in the angle domain).
 ///
 /// Per frame k every instrument m gives theta_m = B_m z_m, with error covariance C_m (noise at rest) + M_k (motion),
-///   M_k = h^2 [(tau_a^2 - tau_c^2) a a' + tau_c^2 |a|^2 I],   a = d omega / dt,
-/// the known wildness of a violent motion, which lies along a. Each frame is weighted by W_k = c (C + M_k)^-1, C the mean of C_m: the
-/// same for all instruments (clipping each alone would destroy isolation), so that sums over a window still agree:
+///   M_k = h^2 [(tau_a^2 - tau_c^2) a a' + tau_c^2 |a|^2 I] + S_k,   a = d omega / dt,
+/// the known wildness of a violent motion, which lies along a. S_k = sum (range/2)^2 b_i b_i' over the axes i near their range in this
+/// frame or the one before (the sensor's filter remembers): along them nothing is known, across them the frame counts; saturated() tells.
+/// Each frame is weighted by W_k = c (C + M_k)^-1, C the mean of C_m: the same for all instruments (clipping each alone would destroy
+/// isolation), so that sums over a window still agree:
 ///   y_m = sum W_k theta_m,k = (sum W_k theta_k) + e_m,
 ///   cov e_m = c W + s C^-1 (C_m - C) C^-1 + floors + outliers,     W = sum W_k
-///   floors: bias_floor and rate_error |omega| summed as a constant error would be;  outliers: kappa^2 sqrt(sum rough_k^2).
-/// Across a turns what little is certain then counts fully, and in the calm moments all of it.
+///   floors: bias_floor, rate_error |omega| and axes_error omega, summed as a constant error would be;
+///   outliers: kappa^2 max over the window of (|W_k| rough_k)^2, rough_k the lately largest |a| h.
+/// Across a turn what little is certain then counts fully, and in the calm moments all of it.
 /// A hypothesis explains  T = u' Q^-1 u  of the chi-square (Q = cov u), a single axis i the part of it along the direction W b_i.
 /// Hypotheses are axes, or with settings.instruments whole instruments: the more certain of all three directions and of its axes.
 ///
 /// False alarms are bounded over all that is tried: every window gets an equal share of false_alarms_per_hour() (settings.pfa is
 /// per frame; default 0.1 per hour), divided by its hypotheses and looks in an hour; all this before the state machine's confirmation. A
-/// window is looked at eight times in its own length, every frame while one is suspicious. statistic = largest sqrt(T / its threshold),
-/// threshold 1.
+/// window is looked at eight times in its own length, every frame while one comes near its limit. statistic = largest
+/// sqrt(T / its threshold), threshold 1.
 ///
 /// Isolated where the best hypothesis exceeds the second by settings.margin (ratio of statistics, default 1.25) in the most certain
-/// window; else ambiguous. The onset is the start of that window, lengthened or shortened to where the hypothesis is likeliest.
+/// window; else ambiguous. Onset: the step is estimated over that window; the onset is where a step of this size is likeliest to have
+/// begun; both are repeated until they agree. (A small error that was there before does then not draw the onset into the past.)
 ///
-/// Each frame waits for its successor, which tells the acceleration after it: one frame of delay. Frames with an axis near its range
-/// (97.5 %) and the one after are held out: they prove nothing; saturated() tells. An instrument that has lost an axis is no
-/// longer compared.
+/// Each frame waits for its successor, which tells the acceleration after it: one frame of delay. An instrument that has lost an axis is
+/// no longer compared.
 class Accumulating final : public Detector {
 public:
     static constexpr std::size_t longest_window = 512;  ///< frames
@@ -72,8 +76,8 @@ public:
     void reset() override;
 
     double false_alarms_per_hour() const { return false_alarms_per_hour_; }
-    /// The newest frame was held out because an axis was near its range, or had just been.
-    bool saturated() const { return held_out_ > 0; }
+    /// An axis is near its range, or has just been: along it the newest frame proves nothing.
+    bool saturated() const { return (near_range_ | near_range_before_) != 0; }
     /// Length of the most certain window of the newest frame, in frames.
     std::size_t window() const { return window_; }
 
@@ -95,6 +99,7 @@ private:
     struct Pending {
         std::uint64_t sequence = 0;
         double interval_s = 0;
+        AxisMask saturated = 0;
         BodyVectors body{};  ///< theta_m
         Eigen::Vector3d rate = Eigen::Vector3d::Zero();
         Eigen::Vector3d acceleration_before = Eigen::Vector3d::Zero();
@@ -106,8 +111,10 @@ private:
         Eigen::Matrix3d weight = Eigen::Matrix3d::Zero();  ///< W_k
         Eigen::Matrix3d biased = Eigen::Matrix3d::Zero();  ///< W_k h
         Eigen::Matrix3d turned = Eigen::Matrix3d::Zero();  ///< W_k |omega| h
-        double rest = 0;                                   ///< how much of W_k is that of rest, squared
-        double roughness = 0;  ///< of this frame alone, weighted: (|W_k| / 3)^2 times the square that roughness_s^2 multiplies
+        std::array<Eigen::Matrix3d, 3> rotated{Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero(),
+                                               Eigen::Matrix3d::Zero()};  ///< W_k omega_j h
+        double rest = 0;                                                  ///< how much of W_k is that of rest, squared
+        double roughness = 0;  ///< of this frame alone, weighted: |W_k|^2 times the square that roughness_s^2 multiplies
         std::uint64_t sequence = 0;
     };
 
@@ -117,6 +124,12 @@ private:
         double instrument = 0;
     };
 
+    /// An instrument, or one axis of it.
+    struct Hypothesis {
+        std::size_t instrument = 0;         ///< place in instruments_
+        std::optional<std::size_t> axis{};  ///< place in the instrument
+    };
+
     /// What one window says.
     struct Finding {
         double certainty = 0;  ///< largest sqrt(T / threshold); above 1 is suspicious
@@ -124,15 +137,26 @@ private:
         AxisMask best = 0;
         AxisMask runner_up = 0;
         std::size_t window = 0;
-        Limits limits{};
+        Hypothesis hypothesis{};  ///< behind `best`
 
-        void consider(double with_certainty, AxisMask axes);
+        void consider(double with_certainty, AxisMask axes, const Hypothesis& what);
     };
 
-    /// The fit of one window: what one instrument contradicts the others by.
+    /// What one instrument contradicts the others by.
     struct Contradiction {
         Eigen::Vector3d u;  ///< R_m^-1 (y_m - y)
         Eigen::Matrix3d q;  ///< cov u
+    };
+
+    /// The fit of one window: all instruments' common rotation.
+    struct Fit {
+        std::array<Eigen::Matrix3d, max_instruments> information;  ///< R_m^-1
+        std::array<Eigen::Vector3d, max_instruments> value;        ///< y_m
+        Eigen::Matrix3d weight;                                    ///< W
+        Eigen::Matrix3d covariance;                                ///< of y
+        Eigen::Vector3d fused;                                     ///< y
+
+        Contradiction contradiction(std::size_t instrument) const;
     };
 
     Accumulating(const DetectorSettings& settings, const geometry::SensorCluster& cluster, const MotionNoise& motion);
@@ -142,14 +166,18 @@ private:
     bool usable(const Measurement& measurement);
     Pending pending_of(const Measurement& measurement) const;
     void take_in(const Pending& frame, const Eigen::Vector3d& acceleration_after);
+    Eigen::Matrix3d blindness(AxisMask saturated, double interval_s) const;
     Eigen::Matrix3d motion_covariance(const Pending& frame, const Eigen::Vector3d& acceleration_after, double blow, double rough) const;
     const Totals& total(std::size_t age) const { return totals_[(next_ + history_length - 1 - age) % history_length]; }
 
     Eigen::Matrix3d common_covariance(std::size_t window) const;
+    Fit fit(std::size_t window) const;
     Finding examine(std::size_t window, const Limits& limits) const;
-    void weigh(const Instrument& instrument, const Contradiction& contradiction, const Eigen::Matrix3d& weight, const Limits& limits,
-               Finding& finding) const;
+    void weigh(std::size_t place, const Fit& fit, const Limits& limits, Finding& finding) const;
     Finding most_certain();
+    Eigen::Vector3d step_over(std::size_t window, const Hypothesis& hypothesis) const;
+    double likelihood(const Eigen::Vector3d& step, std::size_t window, const Hypothesis& hypothesis) const;
+    std::size_t likeliest_window(const Eigen::Vector3d& step, const Hypothesis& hypothesis) const;
     std::uint64_t onset_of(const Finding& finding) const;
     void report(const Finding& finding, Assessment& assessment) const;
 
@@ -170,7 +198,8 @@ private:
     std::size_t next_ = 0;
     std::size_t size_ = 0;
     std::uint64_t frames_ = 0;
-    unsigned held_out_ = 0;
+    AxisMask near_range_ = 0;         ///< axes near their range in the newest frame …
+    AxisMask near_range_before_ = 0;  ///< … and in the one before
     bool alert_ = false;
     std::optional<Pending> pending_;
     double wildness_ = 0;  ///< |d omega/dt|^2, slow to fall

@@ -24,7 +24,8 @@ enum class AxisFault : std::uint8_t {
 /// Frozen: two or more bitwise repeats (three equal values) in frames in which the other axes say that this one moved, and is elsewhere, by
 /// more than six standard deviations (at a turning point of its own motion a sound axis repeats itself however wildly the others move); or,
 /// without such help, so many repeats that an axis which repeats as often as this one used to would show them once in 1e9 tries. A single
-/// repeat is normal on real hardware. Not asked of axes whose noise is below a quarter of their quantum: these may repeat for ever.
+/// repeat is normal on real hardware. Not asked of axes whose noise is below a quarter of their quantum (these may repeat for ever), nor of
+/// values within 2.5 % of the range (in a motion beyond it a sound axis repeats its limit).
 ///
 /// Not here, because without redundancy they look like motion: bias, scale, sign, spikes within the range. Parity finds them.
 /// Allocates nothing.
@@ -57,7 +58,8 @@ private:
     void work_with(AxisMask used);
     AxisFault judge(const Measurement& measurement, std::size_t axis) const;
     bool is_frozen(const History& history) const;
-    bool is_railed(const Measurement& measurement, std::size_t axis, double limit) const;
+    bool is_near_range(const Measurement& measurement, std::size_t axis) const;
+    bool is_railed(const Measurement& measurement, std::size_t axis) const;
     void remember(const Measurement& measurement, std::size_t axis);
 
     geometry::SensorCluster cluster_;
