@@ -3,6 +3,7 @@
 #include "quorient/geometry/sensor_cluster.hpp"
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <span>
@@ -70,7 +71,8 @@ Rate rate(std::uint64_t count, std::uint64_t trials);
 struct RunSettings {
     std::uint64_t trials = 0;  ///< of each scene
     std::uint64_t seed = 1;
-    unsigned threads = 0;  ///< 0 = one per core
+    unsigned threads = 0;                       ///< 0 = one per core
+    std::vector<std::filesystem::path> logs{};  ///< recordings, for the studies that play some
 };
 
 /// Called after each block with the blocks done and their number; from any thread, one call at a time.

@@ -31,9 +31,14 @@ Report ceiling(const RunSettings& settings, const OnProgress& on_progress);
 /// False alarms and isolation of the observer schemes, with limits from noise and model error, and with a fixed threshold.
 Report vessel(const RunSettings& settings, const OnProgress& on_progress);
 
+/// Faults added to real recordings (settings.logs, two or more of the same sensors; each is corrected by the calibration of the next):
+/// how soon the accumulating detector names them, beside the PX4 rule, and what it says of the recordings as they are.
+Report detection_delay(const RunSettings& settings, const OnProgress& on_progress);
+
 inline constexpr std::uint64_t isolation_trials = 100'000;
 inline constexpr std::uint64_t paper_002_trials = 400'000;
 inline constexpr std::uint64_t ceiling_trials = 200'000;
 inline constexpr std::uint64_t vessel_trials = 100;
+inline constexpr std::uint64_t detection_delay_trials = 60;
 
 }  // namespace quorient::lab

@@ -2,6 +2,7 @@
 #include "cluster_input.hpp"
 #include "failure.hpp"
 #include "json_output.hpp"
+#include "log_sample.hpp"
 #include "quorient/recording/merge.hpp"
 #include "verbs.hpp"
 
@@ -25,24 +26,13 @@ struct CalibrateOptions {
     bool json = false;
 };
 
-calibration::Sample sample_of(const recording::RecordedFrame& frame, bool follows)
-{
-    calibration::Sample sample;
-    sample.time_s = static_cast<double>(frame.time_ns) * 1e-9;
-    sample.interval_s = frame.interval_s;
-    sample.rate = Eigen::Map<const Eigen::VectorXd>(frame.increment.data(), static_cast<Eigen::Index>(frame.axis_count)) / frame.interval_s;
-    sample.complete = frame.valid_mask == all_axes(frame.axis_count);
-    sample.follows = follows;
-    return sample;
-}
-
 std::vector<calibration::Sample> read_samples(recording::Reader& reader)
 {
     std::vector<calibration::Sample> samples;
     recording::RecordedFrame frame;
     for (auto outcome = reader.next(frame); outcome != recording::ReadOutcome::end; outcome = reader.next(frame)) {
         if (outcome == recording::ReadOutcome::rejected) fmt::print(stderr, "{}\n", reader.problem());
-        else samples.push_back(sample_of(frame, frame.lost_before == 0));
+        else samples.push_back(sample_of(frame));
     }
     return samples;
 }

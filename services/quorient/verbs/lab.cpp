@@ -6,6 +6,8 @@
 #include "verbs.hpp"
 
 #include <fmt/format.h>
+#include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,6 +28,7 @@ constexpr Study studies[] = {
     {"paper-002", lab::paper_002_trials, lab::paper_002},
     {"ceiling", lab::ceiling_trials, lab::ceiling},
     {"vessel", lab::vessel_trials, lab::vessel},
+    {"detection-delay", lab::detection_delay_trials, lab::detection_delay},
 };
 
 struct LabOptions {
@@ -34,20 +37,33 @@ struct LabOptions {
     std::uint64_t seed = 1;
     unsigned threads = 0;
     std::string plot;
+    std::vector<std::string> logs;
     bool json = false;
 };
+
+/// The recordings that the user names, or the two of one array that the data folder holds.
+std::vector<std::filesystem::path> logs_of(const LabOptions& options)
+{
+    if (options.study != "detection-delay") return {};
+    if (options.logs.size() == 1) fail("--log: two or more recordings of the same sensors are needed: each is calibrated by another one");
+    if (!options.logs.empty()) return {options.logs.begin(), options.logs.end()};
+    const char* const given = std::getenv("QUORIENT_DATA_DIR");
+    const std::filesystem::path folder =
+        (given != nullptr ? std::filesystem::path(given) : "../shared/data") / std::filesystem::path("mimu4444_carlsson");
+    return {folder / "exp_1/data.bin", folder / "exp_2/data.bin"};
+}
 
 const Study& study_of(const LabOptions& options)
 {
     for (const Study& study : studies)
         if (options.study == study.name) return study;
-    fail(fmt::format("unknown study '{}'; known are isolation, paper-002, ceiling, vessel", options.study));
+    fail(fmt::format("unknown study '{}'; known are isolation, paper-002, ceiling, vessel, detection-delay", options.study));
 }
 
 void run(const LabOptions& options)
 {
     const Study& study = study_of(options);
-    const lab::RunSettings settings{options.trials.value_or(study.trials), options.seed, options.threads};
+    const lab::RunSettings settings{options.trials.value_or(study.trials), options.seed, options.threads, logs_of(options)};
     const lab::Report report = [&] {
         lab::Progress progress;
         return study.run(settings, [&progress](std::size_t done, std::size_t all) { progress.show(done, all); });
@@ -71,17 +87,20 @@ void add_lab(CLI::App& program)
         "isolation   methods x layouts x 0, 1, 2 faults, and the subset method over its margin\n"
         "paper-002   the figures of the paper that a fitted fault model reproduces\n"
         "ceiling     what a single sample can detect and isolate, per layout\n"
-        "vessel      observers on the vessel of paper 001: false alarms and isolation with a model that is 5 % wrong\n\n"
+        "vessel      observers on the vessel of paper 001: false alarms and isolation with a model that is 5 % wrong\n"
+        "detection-delay  faults added to two recordings of one array (--log twice), each corrected by the other's calibration\n\n"
         "The result depends on trials and seed, not on the number of threads.\n\n"
         "Example: every method on the dodecahedron and the cone, with a plot\n"
         "  quorient lab isolation --trials 100000 --seed 1 --plot isolation.svg\n");
     const auto options = std::make_shared<LabOptions>();
-    verb->add_option("study", options->study, "isolation, paper-002, ceiling or vessel")->option_text("STUDY")->required();
+    verb->add_option("study", options->study, "isolation, paper-002, ceiling, vessel or detection-delay")->option_text("STUDY")->required();
     verb->add_option("--trials", options->trials, "of each scene (default: what takes some seconds)")
         ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}));
     verb->add_option("--seed", options->seed, "of the random numbers")->capture_default_str();
     verb->add_option("--threads", options->threads, "0 = one per core")->check(CLI::Range(0U, 1024U))->capture_default_str();
     verb->add_option("--plot", options->plot, "writes the charts to this SVG file");
+    verb->add_option("--log", options->logs,
+                     "detection-delay: a recording; repeat it (default: the two in QUORIENT_DATA_DIR or ../shared/data)");
     verb->add_flag("--json", options->json, "one line of JSON, 17 significant digits");
     verb->callback([options] { run(*options); });
 }

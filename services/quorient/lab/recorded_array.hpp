@@ -1,0 +1,42 @@
+#pragma once
+
+#include "quorient/calibration/calibration.hpp"
+#include "quorient/geometry/sensor_cluster.hpp"
+#include "quorient/messages/sensor_frame.hpp"
+#include "quorient/recording/reader.hpp"
+
+#include <filesystem>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+namespace quorient::lab {
+
+/// A recording in memory, as measured, and what it tells of its sensors.
+struct Recording {
+    std::string name;
+    std::vector<calibration::Sample> samples;
+    std::vector<std::uint64_t> sequence;  ///< of each sample; what the log lost leaves a gap
+    calibration::Calibration calibration;
+};
+
+/// @returns what cannot be read or calibrated, naming the file.
+tl::expected<Recording, std::string> load_recording(const std::filesystem::path& log);
+
+/// Some instruments of a recording, with the biases, gains and axes that another recording of the same sensors gave.
+struct RecordedArray {
+    std::string name;  ///< e.g. "exp_1, IMU1 IMU3 IMU5"
+    geometry::SensorCluster cluster;
+    std::vector<SensorFrame> frames;
+    std::vector<calibration::Segment> rest;
+    calibration::Segment motion;  ///< the longest stretch without rest
+
+    double duration_s() const;
+};
+
+/// @param instruments  places in the recording's list of instruments.
+/// @returns what tells that the two are not of the same sensors.
+tl::expected<RecordedArray, std::string> corrected(const Recording& recording, const calibration::CalibratedCluster& calibration,
+                                                   const std::vector<std::size_t>& instruments);
+
+}  // namespace quorient::lab
