@@ -59,6 +59,22 @@ ModulusPrediction predict_modulus(const std::array<double, 4>& moduli, double re
     return prediction;
 }
 
+double prediction_uncertainty(const std::array<double, 4>& moduli, double resolution)
+{
+    const double predicted = predict_modulus(moduli, resolution).predicted;
+    double squares = 0;
+    for (std::size_t k = 0; k < moduli.size(); ++k) {
+        double moved = 0;
+        for (const double step : {-resolution, resolution}) {
+            auto other = moduli;
+            other[k] += step;
+            moved = std::max(moved, std::abs(predict_modulus(other, resolution).predicted - predicted));
+        }
+        squares += moved * moved;
+    }
+    return std::sqrt(squares);
+}
+
 tl::expected<std::unique_ptr<ExtrapolationDetector>, std::string> ExtrapolationDetector::make(const DetectorSettings& settings,
                                                                                               const geometry::SensorCluster& cluster)
 {
@@ -73,6 +89,7 @@ void ExtrapolationDetector::observe(const Frame& frame)
     predicted_ = learnt_ == modulus_.size();
     if (!predicted_) return;
     prediction_ = predict_modulus(modulus_, resolution());
+    uncertainty_ = prediction_uncertainty(modulus_, resolution() / 2);  // what rounding takes at most
     working_triad_ = 0;
     for (std::size_t k = 1; k < axis_count; ++k)
         if (distance(k) < distance(working_triad_)) working_triad_ = k;
@@ -91,7 +108,7 @@ void ExtrapolationDetector::attribute(const Frame&, Assessment& assessment)
     assessment.isolated = left_out_by(working_triad_);
     assessment.add_candidate(assessment.isolated);
     for (std::size_t k = 0; k < axis_count; ++k) {
-        if (k == working_triad_ || distance(k) - distance(working_triad_) > margin_) continue;
+        if (k == working_triad_ || distance(k) - distance(working_triad_) > margin_ + uncertainty_) continue;
         assessment.add_candidate(left_out_by(k));
         assessment.outcome = Outcome::ambiguous;
     }

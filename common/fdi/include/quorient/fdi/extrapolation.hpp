@@ -36,13 +36,19 @@ struct ModulusPrediction {
 /// @param resolution  one quantum [unit of the moduli]; only the fallback asks.
 ModulusPrediction predict_modulus(const std::array<double, 4>& moduli, double resolution);
 
+/// How far the prediction moves when each modulus in turn is off by one resolution, root of the sum of squares: where the determinant
+/// is small this is hundreds of quanta.
+double prediction_uncertainty(const std::array<double, 4>& moduli, double resolution);
+
 /// The paper's method: the working triad is the one whose modulus lies nearest to the predicted one.
 ///
 /// In the pipeline the parity scalar decides whether there is a fault at all, and the prediction from before the fault is held
 /// while the fault lasts (fed back on itself it diverges). Known weakness, kept because it is the paper's: faults that turn
 /// the vector without changing its length are invisible, and a nearly constant modulus makes the prediction noise. Where the next
 /// triad is nearer than settings.margin [unit of z] to the best, both axes are candidates; the default margin is what the bound
-/// lets a healthy modulus differ by.
+/// lets a healthy modulus differ by. To it comes the uncertainty of the prediction itself, which the paper does not ask for: without
+/// it 34 of 1400 soft faults (x 0.8) at random times of the paper's motion named a healthy axis within six frames, with it none; 719 in
+/// place of 1017 are told in that time, the others are ambiguous first.
 class ExtrapolationDetector final : public FourAxisDetector {
 public:
     static tl::expected<std::unique_ptr<ExtrapolationDetector>, std::string> make(const DetectorSettings& settings,
@@ -69,6 +75,7 @@ private:
     unsigned learnt_ = 0;
     bool predicted_ = false;
     ModulusPrediction prediction_;
+    double uncertainty_ = 0;  ///< of the prediction
     std::array<double, axis_count> triad_modulus_{};
     std::size_t working_triad_ = 0;
 };
