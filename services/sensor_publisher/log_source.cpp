@@ -1,7 +1,7 @@
 #include "describe.hpp"
 #include "quorient/attitude/levelling.hpp"
 #include "quorient/attitude/quaternion.hpp"
-#include "quorient/recording/reader.hpp"
+#include "quorient/recording/merge.hpp"
 #include "quorient/recording/rest_statistics.hpp"
 #include "quorient/runtime/text.hpp"
 #include "sources.hpp"
@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <filesystem>
 #include <limits>
 #include <optional>
 
@@ -21,6 +22,20 @@ std::array<double, max_axes> gains(const system::SensorSettings& settings)
     std::array<double, max_axes> gain;
     gain.fill(1.0);
     return settings.source.log->calibration ? settings.source.log->calibration->gain : gain;
+}
+
+/// Of the log, or of the first of several: what its problems are reported by.
+const std::string& name_of(const system::SensorSettings& settings)
+{
+    return settings.source.log->files.front();
+}
+
+tl::expected<std::unique_ptr<recording::Reader>, std::string> open(const system::SensorSettings& settings)
+{
+    const std::vector<std::filesystem::path> files(settings.source.log->files.begin(), settings.source.log->files.end());
+    auto merged = recording::open_logs(files);
+    if (!merged) return tl::make_unexpected(merged.error());
+    return std::move(merged->reader);
 }
 
 class LogSource final : public FrameSource {
@@ -154,14 +169,14 @@ tl::expected<ClusterDescription, std::string> describe_log(recording::Reader& re
     auto description = reader.description();
     if (settings.cluster) {
         if (settings.cluster->size() != description.axis_count)
-            return tl::make_unexpected(fmt::format("{}: has {} axes, the system file's layout {}", settings.source.log->file,
+            return tl::make_unexpected(fmt::format("{}: has {} axes, the system file's layout {}", name_of(settings),
                                                    description.axis_count, settings.cluster->size()));
         description = describe(*settings.cluster);
     }
     const auto& calibration = settings.source.log->calibration;
     if (calibration) {
         if (const auto other = difference(calibration->description, description))
-            return tl::make_unexpected(fmt::format("{}: the calibration is of other sensors: {}", settings.source.log->file, *other));
+            return tl::make_unexpected(fmt::format("{}: the calibration is of other sensors: {}", name_of(settings), *other));
         description = calibration->description;
     }
     std::optional<attitude::Quaternion> levelled;
@@ -172,7 +187,7 @@ tl::expected<ClusterDescription, std::string> describe_log(recording::Reader& re
         if (!calibration) description.sigma = rest->sigma_rad;
         if (settings.levelled_heading_rad) {
             const auto attitude = level_at_rest(settings, *rest, description);
-            if (!attitude) return tl::make_unexpected(fmt::format("{}: {}", settings.source.log->file, attitude.error()));
+            if (!attitude) return tl::make_unexpected(fmt::format("{}: {}", name_of(settings), attitude.error()));
             levelled = *attitude;
         }
     }
@@ -187,9 +202,9 @@ tl::expected<ClusterDescription, std::string> describe_log(recording::Reader& re
 
 /// Where a log with truth begins: its first truth is that at the *end* of the first interval, so the first rotation is taken back.
 /// Exact but for the coning within one interval and the first frame's quantisation.
-std::optional<std::array<double, 4>> attitude_at_start(const std::string& file, const geometry::SensorCluster& cluster)
+std::optional<std::array<double, 4>> attitude_at_start(const system::SensorSettings& settings, const geometry::SensorCluster& cluster)
 {
-    auto reader = recording::open_log(file);
+    auto reader = open(settings);
     recording::RecordedFrame first;
     if (!reader || (*reader)->next(first) != recording::ReadOutcome::frame || !first.truth) return std::nullopt;
     const geometry::AxisVector increment = Eigen::Map<const Eigen::VectorXd>(first.increment.data(), cluster.axes.rows());
@@ -201,18 +216,17 @@ std::optional<std::array<double, 4>> attitude_at_start(const std::string& file, 
 
 tl::expected<std::unique_ptr<FrameSource>, std::string> make_log_source(const system::SensorSettings& settings, std::uint64_t epoch)
 {
-    const auto& file = settings.source.log->file;
-    auto beginning = recording::open_log(file);
+    auto beginning = open(settings);
     if (!beginning) return tl::make_unexpected(beginning.error());
     auto description = describe_log(**beginning, settings, epoch);
     if (!description) return tl::make_unexpected(description.error());
     const auto cluster = geometry::make_cluster(*description);
-    if (!cluster) return tl::make_unexpected(fmt::format("{}: {}", file, cluster.error()));
-    if (const auto start = attitude_at_start(file, *cluster); start && description->initial_attitude_known == 0) {
+    if (!cluster) return tl::make_unexpected(fmt::format("{}: {}", name_of(settings), cluster.error()));
+    if (const auto start = attitude_at_start(settings, *cluster); start && description->initial_attitude_known == 0) {
         state_attitude(*description, *start, InitialAttitude::measured);
     }
 
-    auto reader = recording::open_log(file);
+    auto reader = open(settings);
     if (!reader) return tl::make_unexpected(reader.error());
     auto source = std::make_unique<LogSource>(std::move(*reader), *cluster, *description, settings);
     for (const auto& fault : settings.source.scenario.faults) {

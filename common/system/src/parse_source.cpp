@@ -112,8 +112,13 @@ void parse_faults(Section& source, System& system)
 void parse_log(Section& source, System& system)
 {
     LogSettings log;
-    source.text("file", log.file);
-    source.require("file");
+    if (source.has("file") && source.raw("file").IsSequence()) {
+        source.texts("file", log.files);
+        if (log.files.empty()) source.problem("file", "expected the name of a log, or a list of them");
+    } else {
+        source.text("file", log.files.emplace_back());
+        source.require("file");
+    }
     // Where the file itself states the axes, it states their noise too.
     if (system.sensor.cluster) log.rest_s = 0;
     source.number("rest_s", log.rest_s, {.lowest = 0, .unit = "s"});

@@ -14,7 +14,7 @@ namespace {
 
 struct ReplayOptions {
     SystemOptions system;
-    std::string log;
+    std::vector<std::string> logs;
     std::optional<double> from_s;
     std::optional<double> to_s;
     bool json = false;
@@ -56,11 +56,23 @@ void print_table(const Json& json)
                dump(json["attitude"]["max_error_rad"]), dump(json["attitude"]["final_error_rad"]));
 }
 
+/// A list of file names as YAML.
+std::string quoted(const std::vector<std::string>& logs)
+{
+    std::string list;
+    for (const auto& log : logs) {
+        std::string name;
+        for (const char character : log) name += character == '\'' ? std::string("''") : std::string(1, character);
+        list += fmt::format("{}'{}'", list.empty() ? "" : ",", name);
+    }
+    return fmt::format("[{}]", list);
+}
+
 int replay(ReplayOptions options)
 {
     options.system.set.push_back("source.kind=log");
     options.system.set.push_back("source.faults=[]");  // the log is what it is; only --fault adds to it
-    options.system.log = options.log;
+    options.system.set.push_back("source.file=" + quoted(options.logs));
     if (options.from_s) options.system.set.push_back(fmt::format("source.from_s={}", *options.from_s));
     if (options.to_s) options.system.set.push_back(fmt::format("source.to_s={}", *options.to_s));
     const auto system = options.system.load();
@@ -85,9 +97,10 @@ void add_replay(CLI::App& program)
     auto* verb = program.add_subcommand(
         "replay", "The whole system over a recording on the local bus, as fast as it goes; bit-identical on every run");
     auto options = std::make_shared<ReplayOptions>();
-    verb->add_option("log", options->log, "MIMU4444 binary, Xsens DOT CSV, or the CSV of quorient simulate and record")
+    verb->add_option("log", options->logs,
+                     "MIMU4444 binary, Xsens DOT CSV, or the CSV of quorient simulate and record; several of one motion are merged")
         ->required()
-        ->type_name("LOG");
+        ->option_text("LOG ...");
     options->system.add_replay_to(*verb);
     verb->add_option("--from", options->from_s, "Begin here")->type_name("S");
     verb->add_option("--to", options->to_s, "End here")->type_name("S");

@@ -31,8 +31,8 @@ struct ProcessSettings {
 
 /// A log played as if the sensors were here.
 struct LogSettings {
-    std::string file;
-    double rest_s = 10;  ///< the log's beginning, at rest: biases and (without a calibration) sigmas come from it
+    std::vector<std::string> files;  ///< several: instruments that logged one motion apart, merged by time
+    double rest_s = 10;              ///< the log's beginning, at rest: biases and (without a calibration) sigmas come from it
     std::optional<calibration::CalibratedCluster> calibration;  ///< axes, gains and noise of these very sensors
     double from_s = 0;
     std::optional<double> to_s;
