@@ -27,9 +27,18 @@ Made made(const DetectorSettings& settings, const geometry::SensorCluster& clust
     return std::unique_ptr<Detector>(std::move(*detector));
 }
 
+/// With fewer instruments it could detect and not isolate; two faults at once and their margin are subset's.
+bool asks_for_accumulating(const DetectorSettings& settings, const geometry::SensorCluster& cluster)
+{
+    constexpr std::size_t least_instruments = 3;
+    return cluster.instrument_name.size() >= least_instruments && settings.max_faults.value_or(1) == 1 && !settings.margin;
+}
+
 Made make_automatic(DetectorSettings settings, const geometry::SensorCluster& cluster)
 {
     if (cluster.size() == FourAxisDetector::axis_count) return made<VectorPredictor>(settings, cluster);
+    if (asks_for_accumulating(settings, cluster))
+        if (auto detector = made<Accumulating>(settings, cluster)) return detector;  // else these are no instruments of three directions
     if (settings.instruments) return made<SubsetLikelihood>(settings, cluster);
     if (!settings.margin) settings.margin = SubsetLikelihood::default_margin;
     return made<LikelihoodRatio>(settings, cluster);
@@ -53,7 +62,8 @@ constexpr Factory factories[] = {
 const std::vector<MethodEntry>& methods()
 {
     static const std::vector<MethodEntry> entries{
-        {"auto", "4 to 24", "vector on four axes, else subset where faults take instruments, else glt"},
+        {"auto", "4 to 24",
+         "vector on four axes; accumulating on three or more triads; else subset where faults take instruments; else glt"},
         {"guaranteed", "max_faults + 4 to 8", "set-membership estimation: never wrong while noise stays within its bound"},
         {"invariants", "6 to 24", "every four axes' motion-free combination"},
         {"voting", "6 to 24", "every three axes' estimate against every other three's"},

@@ -1,6 +1,7 @@
 #include "quorient/fdi/accumulating.hpp"
 
 #include "quorient/fdi/fault_monitor.hpp"
+#include "quorient/fdi/make_detector.hpp"
 #include "quorient/geometry/layouts.hpp"
 
 #include <gmock/gmock.h>
@@ -129,7 +130,50 @@ TEST(Accumulating, is_silent_without_a_fault_at_rest_and_in_violent_motion)
     EXPECT_EQ(play(34, false, Array::violent, 0, 0, 0, 40'000).isolated, 0U);
 }
 
-TEST(Accumulating, holds_out_saturated_frames_instead_of_blaming_an_axis)
+/// A body that turns faster than the range about z: every instrument's third axis shows its own limit.
+std::uint64_t isolated_beyond_the_range(double bias_deg_s)
+{
+    Array array(11);
+    auto monitor = FaultMonitor::make({.method = "accumulating"}, {}, array.cluster).value();
+    for (std::uint64_t sequence = 0; sequence < 1200; ++sequence) {
+        SensorFrame frame = array.frame(sequence, Array::rest);
+        for (const std::size_t axis : {2U, 5U, 8U})
+            frame.increment[axis] = (0.985 + 0.002 * static_cast<double>(axis)) * range_rad_s * interval_s;
+        if (sequence >= 600) frame.increment[3] += bias_deg_s * degree * interval_s;
+        const FaultVerdict& verdict = monitor.assess(frame);
+        if (verdict.isolated_mask == 0) continue;
+        EXPECT_EQ(verdict.isolated_mask, axis_bit(3));
+        return sequence;
+    }
+    return never;
+}
+
+TEST(Accumulating, finds_a_fault_across_the_direction_in_which_the_others_are_saturated)
+{
+    const std::uint64_t isolated_at = isolated_beyond_the_range(2);
+    EXPECT_GE(isolated_at, 600U);
+    EXPECT_LE(isolated_at, 605U);
+    EXPECT_EQ(isolated_beyond_the_range(0), never) << "their limits differ by 24 deg/s: that is no fault";
+}
+
+TEST(Accumulating, dates_a_step_by_its_own_size_whatever_small_error_was_there_before)
+{
+    for (std::uint64_t seed = 40; seed < 46; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Array array(seed);
+        auto monitor = FaultMonitor::make({.method = "accumulating"}, {}, array.cluster).value();
+        std::uint64_t excluded_from = never;
+        for (std::uint64_t sequence = 0; sequence < 1200 && excluded_from == never; ++sequence) {
+            SensorFrame frame = array.frame(sequence, Array::rest);
+            frame.increment[4] += (sequence < 700 ? 0.1 : 1.0) * degree * interval_s;
+            excluded_from = monitor.assess(frame).excluded_from[4];
+        }
+        EXPECT_GE(excluded_from, 694U);
+        EXPECT_LE(excluded_from, 703U);
+    }
+}
+
+TEST(Accumulating, does_not_blame_an_axis_that_alone_is_near_its_range)
 {
     Array array(5);
     auto detector = Accumulating::make({}, array.cluster).value();
@@ -176,6 +220,20 @@ TEST(Accumulating, says_how_much_is_left_to_detect)
     EXPECT_EQ(detector->detectable_remaining(), 1U);
     detector->exclude(0b000001111);
     EXPECT_EQ(detector->detectable_remaining(), 0U) << "one whole instrument has nothing to be compared with";
+}
+
+TEST(Accumulating, is_what_auto_takes_on_three_triads_and_not_on_two_nor_for_two_faults)
+{
+    const auto taken = [](const DetectorSettings& settings, const char* layout) {
+        const auto made = make_detector(settings, Array(1, layout).cluster).value();
+        return dynamic_cast<const Accumulating*>(made.get()) != nullptr;
+    };
+    DetectorSettings settings;
+    EXPECT_TRUE(taken(settings, "triads-3"));
+    EXPECT_TRUE(taken(settings, "triads-8"));
+    EXPECT_FALSE(taken(settings, "triads-2"));
+    settings.max_faults = 2;
+    EXPECT_FALSE(taken(settings, "triads-3"));
 }
 
 TEST(Accumulating, refuses_what_it_cannot_serve_and_says_why)

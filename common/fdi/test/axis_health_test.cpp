@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -123,6 +124,16 @@ TEST_F(AxisHealthTest, tells_an_axis_at_its_rail_from_a_body_that_turns_that_fas
     EXPECT_EQ(feed(
                   50, [&](unsigned) { return Eigen::Vector3d(0.99 * range_rad_s * along); }, sound),
               0U);
+}
+
+TEST_F(AxisHealthTest, forgives_the_repeats_of_an_axis_beyond_whose_range_the_body_turns)
+{
+    constexpr double limit_rad_s = 2.5;
+    cluster_.range(2) = limit_rad_s;
+    health_.emplace(cluster_);
+    const auto clipped = [](double value) { return std::clamp(value, -limit_rad_s * interval_s, limit_rad_s * interval_s); };
+    EXPECT_EQ(feed(50'000, wild, clipped), 0U);
+    EXPECT_EQ(feed(50, wild, [](double) { return 0.9 * limit_rad_s * interval_s; }), 0b100U) << "frozen elsewhere it is found";
 }
 
 TEST_F(AxisHealthTest, does_not_ask_for_noise_where_the_quantum_hides_it)

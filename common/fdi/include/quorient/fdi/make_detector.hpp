@@ -21,8 +21,9 @@ struct MethodEntry {
 /// The methods that make_detector knows by name, `auto` first.
 const std::vector<MethodEntry>& methods();
 
-/// The method of settings.method on this cluster. `auto`: `vector` on four axes (parity alone cannot isolate there), else `subset`
-/// where settings.instruments, else `glt` with the margin of `subset`.
+/// The method of settings.method on this cluster. `auto`: `vector` on four axes (parity alone cannot isolate there); `accumulating` on
+/// three or more instruments that each measure all three directions, unless settings.margin or max_faults ask for more; else `subset`
+/// where settings.instruments; else `glt` with the margin of `subset`.
 /// @returns why not: an unknown name (with the known ones), a number of axes the method does not allow, a figure out of range, or
 ///          noise that is known neither from the settings nor from the cluster.
 tl::expected<std::unique_ptr<Detector>, std::string> make_detector(const DetectorSettings& settings,

@@ -8,7 +8,7 @@ namespace quorient::fdi {
 /// Everything a user can set about detection; what is absent takes the method's default.
 /// Lengths of time in seconds, tolerances in the unit of the measurement (rad of one increment for gyros).
 struct DetectorSettings {
-    std::string method = "auto";  ///< auto: vector on 4 axes, else subset over instruments or glt; see make_detector
+    std::string method = "auto";  ///< auto: by the cluster, see make_detector
     std::optional<double> tolerance{};
     std::optional<double> sigma{};  ///< in place of the description's
     std::optional<double> pfa{};    ///< false-alarm probability of one frame
@@ -17,7 +17,7 @@ struct DetectorSettings {
     std::optional<unsigned> max_faults{};
     std::optional<double> margin{};
     std::optional<double> doubt{};  ///< subset: share of right isolations held back because one more, small fault is not ruled out
-    bool instruments = false;  ///< a fault takes a whole instrument
+    bool instruments = false;       ///< a fault takes a whole instrument
     bool relaxed = false;
 };
 
@@ -26,7 +26,7 @@ struct VerdictSettings {
     unsigned confirm_required = 2;  ///< m …
     unsigned confirm_window = 3;    ///< … of n frames
     unsigned warm_up_frames = 10;
-    unsigned onset_guard_frames = 1;  ///< placed early: one frame late costs a contaminated increment, early costs nothing
+    unsigned onset_guard_frames = 1;          ///< placed early: one frame late costs a contaminated increment, early costs nothing
     std::optional<double> readmit_after_s{};  ///< absent: by command only
 };
 
