@@ -53,6 +53,7 @@ tl::expected<void, std::string> FaultInjector::add(const FaultSpec& fault)
 {
     auto resolved = resolve(fault, cluster_);
     if (!resolved) return tl::unexpected(std::move(resolved.error()));
+    std::erase_if(faults_, [this](const Active& active) { return active.fault.end_s <= newest_s_; });
     if (faults_.size() == capacity) return tl::unexpected(fmt::format("{} faults are in place already; clear some first", capacity));
     faults_.push_back({std::move(*resolved), 0, {}});
     return {};
@@ -71,7 +72,7 @@ AxisMask FaultInjector::apply(SensorFrame& frame, double begin_s)
     const auto measured = frame.increment;
     const AxisMask measured_valid = frame.valid_mask;
 
-    const double middle_s = begin_s + frame.interval_s / 2.0;
+    const double middle_s = newest_s_ = begin_s + frame.interval_s / 2.0;
     for (Active& active : faults_) {
         if (!acts(active.fault, middle_s)) continue;
         for (std::size_t axis = 0; axis < frame.axis_count; ++axis)

@@ -245,6 +245,20 @@ TEST(FaultInjector, refuses_more_faults_than_it_has_places)
     EXPECT_FALSE(injector.add(fault));
 }
 
+TEST(FaultInjector, takes_new_faults_in_the_places_of_those_that_have_ended)
+{
+    FaultInjector injector(two_triads(), 5);
+    for (std::uint64_t sequence = 0; sequence < 3 * FaultInjector::capacity; ++sequence) {
+        const double begin_s = static_cast<double>(sequence) * interval_s;
+        FaultSpec fault = *parse_fault("axis=1,kind=zero");
+        fault.start_s = begin_s;
+        fault.end_s = begin_s + interval_s;
+        ASSERT_TRUE(injector.add(fault)) << sequence;
+        SensorFrame frame = healthy_frame(sequence);
+        EXPECT_EQ(injector.apply(frame, begin_s), axis_bit(1));
+    }
+}
+
 TEST(FrameAccumulator, sums_what_is_valid_and_counts_what_is_not)
 {
     FrameAccumulator accumulator;

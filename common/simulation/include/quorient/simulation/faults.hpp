@@ -57,7 +57,7 @@ public:
     /// @param seed  of the noise and dropout faults, which are functions of (seed, axis, sequence).
     FaultInjector(geometry::SensorCluster cluster, std::uint64_t seed);
 
-    /// @returns an error as from resolve, or that all places are taken.
+    /// Faults that have ended make room. @returns an error as from resolve, or that all places are taken.
     tl::expected<void, std::string> add(const FaultSpec& fault);
 
     void clear() { faults_.clear(); }
@@ -89,6 +89,7 @@ private:
     geometry::SensorCluster cluster_;
     std::uint64_t seed_ = 0;
     std::vector<Active> faults_;
+    double newest_s_ = -std::numeric_limits<double>::infinity();  ///< middle of the newest frame
     std::array<double, max_axes> last_value_{};  // that left the injector
     AxisMask has_last_value_ = 0;
     std::vector<std::array<double, max_axes>> history_;  // ring of measured increments, newest at history_count_ - 1
