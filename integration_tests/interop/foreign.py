@@ -101,7 +101,8 @@ class InteropTest(ProcessTest):
 
     def all_alive(self, services):
         for name, (process, log) in services.items():
-            self.assertIsNone(process.poll(), f"{name} ended with {process.returncode}:\n{log.read_text()[-2000:]}")
+            if process.poll() is not None:
+                self.fail(f"{name} ended with {process.returncode}:\n{log.read_text(errors='replace')[-2000:]}")
 
     def kill(self, process):
         """@param process  id of a service of this test's own pipeline."""

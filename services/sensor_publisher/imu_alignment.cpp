@@ -128,8 +128,10 @@ void ImuAlignment::advance(std::int64_t now_ns)
         const auto& heard = heard_[imu];
         auto& instrument = instruments_[imu];
         const bool faulty = now_ns < heard.faulty_until_ns;
-        instrument.valid = !faulty && heard.stream.integrate(begin_ns_, end_ns_, skew_ns_, instrument.increment);
-        instrument.fault = instrument.valid ? Fault::none : faulty ? heard.fault : Fault::silent;
+        const bool whole = heard.stream.integrate(begin_ns_, end_ns_, skew_ns_, instrument.increment);
+        const bool finite = instrument.increment.allFinite();  // large numbers overflow in sums and differences
+        instrument.valid = !faulty && whole && finite;
+        instrument.fault = instrument.valid ? Fault::none : faulty ? heard.fault : whole ? Fault::not_finite : Fault::silent;
     }
 }
 

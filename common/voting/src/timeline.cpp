@@ -1,8 +1,16 @@
 #include "quorient/voting/timeline.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace quorient::voting {
+
+namespace {
+
+/// Counting ahead of a later one would wrap, and looking for the next frame never end. No publisher gets here in 50 million years.
+constexpr std::uint64_t last_sequence = std::numeric_limits<std::uint64_t>::max() / 2;
+
+}  // namespace
 
 void Timeline::start(Identity first, std::int64_t now_ns)
 {
@@ -16,6 +24,7 @@ void Timeline::start(Identity first, std::int64_t now_ns)
 
 Timeline::Arrival Timeline::classify(Identity identity, std::int64_t now_ns) const
 {
+    if (identity.sequence > last_sequence) return Arrival::old;
     if (!epoch_ || identity.epoch > *epoch_) return Arrival::ahead;
     if (identity.epoch < *epoch_) return Arrival::old;
     if (identity.sequence < next_) return identity.sequence < oldest() ? Arrival::old : Arrival::late;
@@ -48,7 +57,7 @@ void Timeline::publish(std::uint64_t sequence, bool on_votes, std::int64_t now_n
 
 void Timeline::pass(Identity identity)
 {
-    if (!epoch_ || identity.epoch != *epoch_ || identity.sequence < next_) return;
+    if (!epoch_ || identity.epoch != *epoch_ || identity.sequence < next_ || identity.sequence > last_sequence) return;
     next_ = identity.sequence + 1;
     newest_ = std::max(newest_, identity.sequence);
 }

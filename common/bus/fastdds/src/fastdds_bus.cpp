@@ -1,5 +1,6 @@
 #include "quorient/bus/fastdds_bus.hpp"
 
+#include "guarded_transport.hpp"
 #include "quorient/bus/interfaces.hpp"
 #include "ros2.hpp"
 #include "types.hpp"
@@ -279,7 +280,7 @@ void add_transports(const Settings& settings, dds::TransportConfigQos& transport
     transports.use_builtin_transports = false;
     const auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
     if (!settings.interface.empty()) udp->interfaceWhiteList = addresses_of(settings.interface);
-    transports.user_transports.push_back(udp);
+    transports.user_transports.push_back(fastdds::guarded(udp));
     if (settings.transport == Transport::shared_memory)
         transports.user_transports.push_back(std::make_shared<rtps::SharedMemTransportDescriptor>());
 }

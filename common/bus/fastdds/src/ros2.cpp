@@ -3,6 +3,7 @@
 #include "quorient/bus/ros2.hpp"
 
 #include "ros2_msgsPubSubTypes.h"
+#include "tolerant_type.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -124,8 +125,8 @@ bool is_ros2(TypeId type)
 eprosima::fastdds::dds::TypeSupport ros2_type_support_of(TypeId type)
 {
     using eprosima::fastdds::dds::TypeSupport;
-    if (type == TypeId::ros2_imu) return TypeSupport{new sensor_msgs::msg::dds_::Imu_PubSubType};
-    return TypeSupport{new diagnostic_msgs::msg::dds_::DiagnosticArray_PubSubType};
+    if (type == TypeId::ros2_imu) return TypeSupport{new TolerantType<sensor_msgs::msg::dds_::Imu_PubSubType>};
+    return TypeSupport{new TolerantType<diagnostic_msgs::msg::dds_::DiagnosticArray_PubSubType>};
 }
 
 void ros2_to_vendor(TypeId type, const void* message, void* sample)

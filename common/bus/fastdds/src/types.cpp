@@ -2,6 +2,7 @@
 
 #include "quorient_msgsPubSubTypes.h"
 #include "ros2.hpp"
+#include "tolerant_type.hpp"
 
 #include <stdexcept>
 
@@ -13,7 +14,7 @@ template <class PubSubType, class Plain>
 eprosima::fastdds::dds::TypeSupport make()
 {
     static_assert(std::is_standard_layout_v<typename PubSubType::type> && sizeof(typename PubSubType::type) == sizeof(Plain));
-    return eprosima::fastdds::dds::TypeSupport{new PubSubType};
+    return eprosima::fastdds::dds::TypeSupport{new TolerantType<PubSubType>};
 }
 
 }  // namespace

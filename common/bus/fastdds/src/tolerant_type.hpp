@@ -1,0 +1,23 @@
+#pragma once
+
+#include <fastcdr/exceptions/Exception.h>
+#include <fastdds/dds/topic/TypeSupport.hpp>
+
+namespace quorient::bus::fastdds {
+
+/// A generated type whose decoder refuses what is no CDR. Fast DDS's own throws on a wrong encapsulation, through the reader, into
+/// whoever takes a sample: one damaged datagram would end the process.
+template <class PubSubType>
+class TolerantType final : public PubSubType {
+public:
+    bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* sample) override
+    {
+        try {
+            return PubSubType::deserialize(payload, sample);
+        } catch (const eprosima::fastcdr::exception::Exception&) {
+            return false;
+        }
+    }
+};
+
+}  // namespace quorient::bus::fastdds

@@ -1,0 +1,122 @@
+#include "bytes.hpp"
+#include "quorient/attitude/integrator.hpp"
+#include "quorient/fdi/fault_monitor.hpp"
+#include "quorient/runtime/frame_intake.hpp"
+#include "quorient/runtime/intake_report.hpp"
+#include "require.hpp"
+#include "targets.hpp"
+
+#include <cmath>
+#include <optional>
+
+namespace quorient::fuzz {
+
+namespace {
+
+constexpr std::uint32_t unit = 1;
+constexpr std::int64_t interval_ns = 5'000'000;
+
+ClusterDescription description(std::uint64_t epoch, std::uint8_t axes)
+{
+    ClusterDescription made;
+    made.epoch = epoch;
+    made.revision = 1;
+    made.unit = unit;
+    made.kind = static_cast<std::uint8_t>(SensorKind::gyro);
+    made.axis_count = made.instrument_count = axes;
+    made.interval_s = 0.005;
+    for (std::size_t axis = 0; axis < axes; ++axis) {
+        const double azimuth = 2 * 3.14159265358979 * static_cast<double>(axis) / axes;
+        made.axis[axis] = {std::sqrt(2.0 / 3) * std::cos(azimuth), std::sqrt(2.0 / 3) * std::sin(azimuth), std::sqrt(1.0 / 3)};
+        made.instrument[axis] = static_cast<std::uint8_t>(axis);
+        made.sigma[axis] = 1e-6;
+    }
+    return made;
+}
+
+/// What stands behind the intake in the two processes of a lane.
+class Lane {
+public:
+    explicit Lane(const char* method) { detection_.method = method; }
+
+    void prepare(const ClusterDescription& described)
+    {
+        monitor_.reset();
+        integrator_.reset();
+        const auto cluster = geometry::make_cluster(described);
+        if (!cluster) return;
+        if (auto made = fdi::FaultMonitor::make(detection_, {}, *cluster)) monitor_ = std::move(*made);
+        attitude::IntegratorSettings settings;
+        settings.history_s = 0.5;
+        if (auto made = attitude::Integrator::make(settings, *cluster)) integrator_.emplace(std::move(*made));
+    }
+
+    void handle(const SensorFrame& frame)
+    {
+        if (integrator_) integrator_->add(frame);
+        if (monitor_) {
+            const auto& verdict = monitor_->assess(frame);
+            REQUIRE((verdict.isolated_mask & ~all_axes(frame.axis_count)) == 0);
+            REQUIRE(verdict.candidate_count <= max_candidates);
+            REQUIRE(verdict.state >= 1 && verdict.state <= 6);
+            if (integrator_) integrator_->apply(verdict);
+        }
+        if (!integrator_) return;
+        while (integrator_->work()) continue;
+        const auto state = integrator_->publish();
+        double norm = 0;
+        for (const double component : state.attitude) norm += component * component;
+        REQUIRE(std::abs(norm - 1) < 1e-6);
+    }
+
+private:
+    fdi::DetectorSettings detection_;
+    std::optional<fdi::FaultMonitor> monitor_;
+    std::optional<attitude::Integrator> integrator_;
+};
+
+}  // namespace
+
+void frames(const std::uint8_t* data, std::size_t size)
+{
+    Bytes bytes{data, size};
+    constexpr std::array methods{"auto", "subset", "glt"};
+    const auto axes = static_cast<std::uint8_t>(3 + bytes.below(6));
+    Lane lane{methods[bytes.below(methods.size())]};
+    runtime::FrameIntake intake{unit, SensorKind::gyro};
+    std::uint64_t epoch = 1, sequence = 0;
+    std::int64_t now = 0;
+    const auto describe = [&](bool well) {
+        auto described = description(epoch, axes);
+        if (!well) spoil_members(described, bytes);
+        intake.describe(described);
+    };
+    describe(bytes.below(4) != 0);
+    while (!bytes.empty()) {
+        now += interval_ns;
+        const auto what = bytes.below(32);
+        if (what == 0) now += 1'000'000'000;
+        if (what == 1) ++epoch, sequence = 0;
+        if (what <= 2) describe(what != 2);
+        SensorFrame frame;
+        frame.epoch = epoch;
+        frame.sequence = sequence++;
+        frame.sample_time_ns = static_cast<std::int64_t>(sequence) * interval_ns;
+        frame.interval_s = 0.005;
+        frame.unit = unit;
+        frame.kind = static_cast<std::uint8_t>(SensorKind::gyro);
+        frame.axis_count = axes;
+        frame.valid_mask = all_axes(axes);
+        frame.description_revision = 1;
+        for (std::size_t axis = 0; axis < axes; ++axis) frame.increment[axis] = 1e-6 * (bytes.byte() - 128);
+        if (what < 16) spoil_members(frame, bytes);
+        intake.offer(frame, now);
+        while (const auto* accepted = intake.next()) {
+            if (accepted->new_description) lane.prepare(*intake.description());
+            lane.handle(accepted->frame);
+        }
+        REQUIRE(intake.complaints() == 0 || !runtime::words_for(intake.complaint()).empty());
+    }
+}
+
+}  // namespace quorient::fuzz
