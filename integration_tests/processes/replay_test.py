@@ -6,6 +6,7 @@ import unittest
 from harness import CONFIGURATIONS, DATA, ProcessTest
 
 RECORDING = DATA / "mimu4444_carlsson/exp_1/data.bin"
+OTHER_RECORDING = DATA / "mimu4444_carlsson/exp_2/data.bin"
 
 
 class SimulatedLog(ProcessTest):
@@ -61,6 +62,23 @@ class Recording(ProcessTest):
         command = ("quorient", "replay", RECORDING, "--system", CONFIGURATIONS / "mimu4444.yaml", "--to", 30, "--json")
         fault = ("--fault", "axis=7,kind=bias,value=1,start=14")
         self.assertEqual(self.run_program(*command, *fault).stdout, self.run_program(*command, *fault).stdout)
+
+    def replay_all(self, *arguments):
+        """The whole recording, violent part included, calibrated by the other one."""
+        cluster = self.write("cluster.yaml", "")
+        calibrated = self.run_program("quorient", "calibrate", OTHER_RECORDING, "--out", cluster)
+        self.assertEqual(calibrated.returncode, 0, calibrated.stderr)
+        result = self.run_program(
+            "quorient", "replay", RECORDING, "--system", CONFIGURATIONS / "mimu4444.yaml", "--set", "source.to_s=null",
+            "--set", f"source.calibration={cluster}", "--set", "source.rest_s=0", "--set", "expect=null", "--json", *arguments,
+        )
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return json.loads(result.stdout)
+
+    def test_blames_nobody_over_the_whole_recording(self):
+        report = self.replay_all()
+        self.assertGreater(report["frames"], 37000)
+        self.assertEqual(report["false_isolations"], [])
 
 
 if __name__ == "__main__":
