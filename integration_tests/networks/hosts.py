@@ -5,7 +5,9 @@ import pathlib
 import subprocess
 import sys
 
-RELAY = pathlib.Path(__file__).resolve().parent / "relay.py"
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "processes"))
+from harness import BIN  # noqa: E402
+
 SWITCH = "switch"
 
 
@@ -34,10 +36,10 @@ class Hosts:
     Use as a context: whatever happens inside, every namespace and with it every link, bridge and rule is removed."""
 
     def __init__(self, networks_of_host, impaired=None):
-        """@param impaired {host: options of relay.py}: this host's first link goes through a relay in place of a cable."""
+        """@param impaired {host: options of bad_cable}: this host's first link."""
         self.networks_of_host = networks_of_host
         self._impaired = impaired or {}
-        self._relays = {}
+        self._bad_cables = {}
         self._networks = sorted({network for networks in networks_of_host.values() for network in networks})
         self._cleanup = contextlib.ExitStack()
 
@@ -89,10 +91,10 @@ class Hosts:
         self._filter(host, "-F", "INPUT")
 
     def impair(self, word):
-        """@param word `bad` or `good`, for every relay."""
-        for relay in self._relays.values():
-            relay.stdin.write(f"{word}\n")
-            relay.stdin.flush()
+        """@param word `bad` or `good`, for every bad cable."""
+        for cable in self._bad_cables.values():
+            cable.stdin.write(word[0])
+            cable.stdin.flush()
 
     def _filter(self, host, *words):
         subprocess.run([*self.inside(host), "iptables", *map(str, words)], check=True, capture_output=True, text=True, timeout=30)
@@ -119,22 +121,22 @@ class Hosts:
     def _connect(self, host, number, network):
         port, interface = self._port(host, number), f"eth{number}"
         if number == 0 and host in self._impaired:
-            self._relay(host, port, interface)
+            self._lay_bad_cable(host, port, interface)
         else:
             ip("-n", self.namespace(SWITCH), "link", "add", port, "type", "veth", "peer", "name", interface, "netns", self.namespace(host))
         ip("-n", self.namespace(SWITCH), "link", "set", port, "master", f"net-{network}", "up")
         ip("-n", self.namespace(host), "addr", "add", f"{self.address(host, network)}/24", "dev", interface)
         ip("-n", self.namespace(host), "link", "set", interface, "up")
 
-    def _relay(self, host, port, interface):
-        """Both ends are made in the switch's namespace; the host's end moves and stays open in the relay."""
-        relay = subprocess.Popen([*self.inside(SWITCH), sys.executable, str(RELAY), port, f"{port}-far", *self._impaired[host]],
+    def _lay_bad_cable(self, host, port, interface):
+        """Both ends are made in the switch's namespace; the host's end moves and stays open in the process."""
+        cable = subprocess.Popen([*self.inside(SWITCH), str(BIN / "quorient_bad_cable"), port, f"{port}-far", *self._impaired[host]],
                                  stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-        self._relays[host] = relay
-        self._cleanup.callback(relay.stdin.close)
-        self._cleanup.callback(relay.stdout.close)
-        self._cleanup.callback(relay.wait)
-        self._cleanup.callback(relay.kill)
-        if relay.stdout.readline() != "ready\n":
-            raise OSError("the relay between two TAP devices does not start")
+        self._bad_cables[host] = cable
+        self._cleanup.callback(cable.stdin.close)
+        self._cleanup.callback(cable.stdout.close)
+        self._cleanup.callback(cable.wait)
+        self._cleanup.callback(cable.kill)
+        if cable.stdout.readline() != "ready\n":
+            raise OSError("the cable between two TAP devices does not start")
         ip("-n", self.namespace(SWITCH), "link", "set", f"{port}-far", "netns", self.namespace(host), "name", interface)

@@ -13,7 +13,6 @@ from streams import DEGRADED, SINGLE
 
 FAULTY_AXIS = 1
 FINAL_ERROR_RAD = 1e-5
-BEGIN_FRAME = 1.5 * RATE_HZ
 FAULT_AFTER_S = 0.5  # of the harm's beginning: the lane that is cut off learns of the fault when it is over
 NOTICED_S = 0.5  # after which nothing but DEGRADED is right while a lane is cut off
 STEADY_FRAMES = 60
@@ -25,6 +24,7 @@ class Layout(NamedTuple):
     networks_of_host: dict
     places: dict
     listener: Place
+    begin_s: float = 1.5  # from the first frame to the harm
 
 
 def lanes_on_hosts():
@@ -36,12 +36,13 @@ def lanes_on_hosts():
 
 
 def two_networks():
-    """Lane a on network A, lane c on network B, all else on both. Who is on both runs on Fast DDS, which sends on all its networks."""
+    """Lane a on network A, lane c on network B, all else on both. Who is on both runs on Fast DDS, which sends on all its networks.
+    The harm waits for the end of its first five seconds, when it announces itself ten times a second to every port of every peer."""
     networks = {"core": ("A", "B"), "a": ("A",), "b": ("A", "B"), "c": ("B",)}
     lanes = {"a": ("cyclonedds", "eth0"), "b": ("fastdds", "any"), "c": ("fastdds", "eth0")}
     places = {f"{role}-{lane}": Place(lane, *joins) for lane, joins in lanes.items() for role in ("attitude", "fdi")}
     core = {name: Place("core", "fastdds", "any") for name in ("voter-1", "voter-2", "sensor")}
-    return Layout(networks, core | places, Place("core", "fastdds", "any"))
+    return Layout(networks, core | places, Place("core", "fastdds", "any"), begin_s=6.5)
 
 
 class Cell(NamedTuple):
@@ -116,14 +117,14 @@ def await_all_lanes(pipeline):
 def run(cell):
     """@returns figures, what the level said, the bounds that were not met, and the logs."""
     layout = cell.layout()
-    fault_s = BEGIN_FRAME / RATE_HZ + FAULT_AFTER_S
+    fault_s = layout.begin_s + FAULT_AFTER_S
     faults = [f"axis={FAULTY_AXIS},kind=scale,value=0.8,start={fault_s}"] if cell.fault else []
     with Hosts(layout.networks_of_host, cell.impaired) as hosts, \
             SpreadPipeline(hosts, layout.places, layout.listener, "source.duration_s=600", f"source.faults={faults}") as pipeline:
         pipeline.until_running()
-        begun = pipeline.until_frame(BEGIN_FRAME)
+        begun = pipeline.until_frame(layout.begin_s * RATE_HZ)
         cell.begin(hosts)
-        healed = pipeline.until_frame(BEGIN_FRAME + cell.duration_s * RATE_HZ)
+        healed = pipeline.until_frame((layout.begin_s + cell.duration_s) * RATE_HZ)
         cell.end(hosts)
         late = None
         try:

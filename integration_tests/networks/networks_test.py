@@ -1,0 +1,30 @@
+#!/usr/bin/env python3
+"""Three cells on hosts that are network namespaces; all of them: run_cell.py --all."""
+import unittest
+
+from run_cell import BY_NAME, attempt  # first: it tells where the kill matrix is
+from hosts import not_permitted
+from pipeline import ask_for_priority
+
+REASON = not_permitted()
+
+
+@unittest.skipIf(REASON, f"networks cannot be made here: {REASON}")
+class Networks(unittest.TestCase):
+    def holds(self, name):
+        _, _, broken, logs, _ = attempt(BY_NAME[name])
+        self.assertFalse(broken, "\n".join(f"--- {process}\n{log}" for process, log in logs.items()))
+
+    def test_a_lane_cut_off_while_a_fault_begins_comes_back(self):
+        self.holds("link-b/2s/isolating")
+
+    def test_either_network_carries_the_system(self):
+        self.holds("networks/A-cut/2s")
+
+    def test_a_lossy_link_loses_nothing(self):
+        self.holds("loss-20%/b")
+
+
+if __name__ == "__main__":
+    ask_for_priority()
+    unittest.main(verbosity=2)
