@@ -122,10 +122,12 @@ TEST(VesselVerb, prints_the_run_beside_the_recomputed_figures)
     std::istringstream text(output.out);
     for (std::string line; std::getline(text, line);) {
         if (line.size() < 2 || line.substr(line.size() - 2) != " %") continue;
+        const auto sign = line.find_last_of("+-");
+        if (sign == std::string::npos) continue;  // a share, not a difference
         ++compared;
         const bool one_digit = line.find("8.0e-06") != std::string::npos || line.find("1.1e-05") != std::string::npos ||
                                line.find("4.0e-06") != std::string::npos;
-        EXPECT_LT(std::abs(std::stod(line.substr(line.find_last_of("+-")))), one_digit ? 12.0 : 2.0) << line;
+        EXPECT_LT(std::abs(std::stod(line.substr(sign))), one_digit ? 12.0 : 2.0) << line;
     }
     EXPECT_EQ(compared, 14);
 }
