@@ -107,6 +107,8 @@ bool ParityFdi::prepare(const ClusterDescription& description)
 
 void ParityFdi::assess(const SensorFrame& frame)
 {
+    if (frame.epoch != last_.epoch) absence_ = {};
+    else if (frame.sequence > last_.sequence + 1) absence_ = {last_.sequence + 1, frame.sequence};
     FaultVerdict verdict = monitor_->assess(frame);
     verdict.unit = settings_.process.node.unit;
     verdict.kind = frame.kind;
@@ -185,8 +187,27 @@ void ParityFdi::on_voted(const VotedAttitude& voted)
 {
     const bool vouched =
         voted.level == static_cast<std::uint8_t>(VoteLevel::full) || voted.level == static_cast<std::uint8_t>(VoteLevel::degraded);
-    if (!adopting_ || voted.unit != settings_.process.node.unit || voted.isolated_mask == 0 || !vouched) return;
-    remember(voted.epoch, voted.excluded_from, of_voters_);
+    if (voted.unit != settings_.process.node.unit || voted.isolated_mask == 0 || !vouched) return;
+    if (adopting_) remember(voted.epoch, voted.excluded_from, of_voters_);
+    else if (monitor_ && voted.epoch == last_.epoch) adopt_missed(voted);
+}
+
+/// A fault that began while this detector was cut off has no onset here: four axes alone cannot name it any more. What a majority of lanes
+/// stands behind is taken over for such an axis, and for no other.
+void ParityFdi::adopt_missed(const VotedAttitude& voted)
+{
+    const std::uint64_t warm_up = settings_.verdict.warm_up_frames;  // an onset so close to the gap was not seen either
+    AxisMask missed = 0;
+    std::array<std::uint64_t, max_axes> excluded_from{};
+    excluded_from.fill(never);
+    for (std::size_t axis = 0; axis < max_axes; ++axis) {
+        const std::uint64_t onset = voted.excluded_from[axis];
+        const bool unseen = onset != never && absence_.end != 0 && onset + warm_up >= absence_.first && onset < absence_.end + warm_up;
+        if (!unseen || !has_axis(voted.isolated_mask & ~last_.isolated_mask, axis)) continue;
+        missed |= axis_bit(axis);
+        excluded_from[axis] = onset;
+    }
+    if (missed != 0) monitor_->adopt(excluded_from);
 }
 
 void ParityFdi::remember(std::uint64_t epoch, const std::array<std::uint64_t, max_axes>& excluded_from, Memory& memory)
@@ -212,7 +233,8 @@ void ParityFdi::on_command(const FaultCommand& command)
 {
     if (command.unit != settings_.process.node.unit || command.action != static_cast<std::uint8_t>(CommandAction::readmit)) return;
     const bool done = monitor_ && monitor_->readmit(command.axes);
-    adopting_ = false;  // the lane's memory is older than this order
+    adopting_ = false;  // what others remember is older than this order
+    absence_ = {};
     node_.report(done ? EventCode::command_done : EventCode::command_refused, done ? Severity::info : Severity::warning_low,
                  identity_of(last_), command.axes,
                  fmt::format("{} {}", done ? "readmits" : "has not isolated", runtime::describe_axes(command.axes)), command.request);

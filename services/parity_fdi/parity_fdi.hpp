@@ -22,6 +22,12 @@ private:
         bool known = false;
     };
 
+    /// Frames [first, end) that never came here.
+    struct Absence {
+        std::uint64_t first = 0;
+        std::uint64_t end = 0;
+    };
+
     void on_frame(const SensorFrame& frame);
     void on_lane_attitude(const AttitudeState& attitude);
     void on_voted(const VotedAttitude& voted);
@@ -35,6 +41,7 @@ private:
     void tell_changes(const FaultVerdict& verdict);
     void remember(std::uint64_t epoch, const std::array<std::uint64_t, max_axes>& excluded_from, Memory& memory);
     void adopt_memories();
+    void adopt_missed(const VotedAttitude& voted);
     void look_at_readiness();
 
     system::DetectorProcess settings_;
@@ -48,6 +55,7 @@ private:
     bool adopting_ = true;        ///< until this detector's first judgement, or an order
     Memory of_lane_;              ///< what the lane's integrator remembers of this detector's life before
     Memory of_voters_;            ///< what a majority stands for: found while this detector was dead
+    Absence absence_;             ///< the last one of the epoch
     std::int64_t arrival_ns_ = 0;
     std::uint64_t told_rejected_ = 0;
     std::uint64_t told_foreign_ = 0;
