@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Spoils the network between the hosts of a running pipeline and judges what is left: `--list`, NAME…, `--all`."""
 import argparse
+import signal
 import sys
 import time
 from typing import Callable, NamedTuple
@@ -9,7 +10,7 @@ from hosts import Hosts, not_permitted
 from spread_pipeline import Place, SpreadPipeline  # first of these: it tells where the kill matrix is
 from judge import judge
 from pipeline import ALL_LANES, RATE_HZ, NotInTime, ask_for_priority
-from streams import DEGRADED, SINGLE
+from streams import DEGRADED, HELD, SINGLE
 
 FAULTY_AXIS = 1
 FINAL_ERROR_RAD = 1e-5
@@ -167,7 +168,7 @@ def bounds_broken(cell, figures, during):
         yield "never back"
     if cell.without:
         lane = 1 << LANE_NAMES.index(cell.without)
-        wrong = sum(sample.level != DEGRADED or bool(sample.vouching & lane) for sample in during)
+        wrong = sum(sample.level < DEGRADED or sample.level not in HELD and bool(sample.vouching & lane) for sample in during)
         if wrong or not during:
             yield f"{wrong} of {len(during)} samples do not say that lane {cell.without} is cut off"
 
@@ -214,6 +215,7 @@ def main():
     if reason := not_permitted():
         print(f"skipped, networks cannot be made here: {reason}")
         return 0
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # what was made is removed then too
     ask_for_priority()
     started = time.monotonic()
     cells = EVERYTHING if options.all else [BY_NAME[name] for name in options.cells]
