@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 #include <algorithm>
@@ -38,6 +39,15 @@ bool roudi_answers()
     const bool connected = ::connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
     ::close(probe);
     return connected;
+}
+
+std::uint64_t roudi_life()
+{
+    struct stat socket {};
+    if (!roudi_answers() || ::stat(roudi_socket, &socket) != 0) return 0;
+    // The inode's number may be given again; the time of its making is not.
+    constexpr std::uint64_t second_ns = 1'000'000'000;
+    return static_cast<std::uint64_t>(socket.st_ctim.tv_sec) * second_ns + static_cast<std::uint64_t>(socket.st_ctim.tv_nsec);
 }
 
 std::string roudi_configuration(std::size_t writers, std::size_t readers)

@@ -16,6 +16,9 @@ constexpr std::array vendors{std::pair{Vendor::fastdds, "fastdds"}, std::pair{Ve
 constexpr std::array transports{std::pair{Transport::udp, "udp"}, std::pair{Transport::shared_memory, "shm"},
                                 std::pair{Transport::iceoryx, "iceoryx"}, std::pair{Transport::in_process, "in-process"}};
 
+constexpr std::array shared_memory_words{std::pair{SharedMemory::required, "required"}, std::pair{SharedMemory::preferred, "preferred"},
+                                         std::pair{SharedMemory::off, "off"}};
+
 /// Above this domain the RTPS ports leave the range of UDP [RTPS 9.6.1.1].
 constexpr std::uint32_t highest_domain = 230;
 
@@ -35,6 +38,14 @@ tl::expected<Transport, std::string> transport_from(std::string_view word)
         if (word == name && transport != Transport::in_process) return transport;
     }
     return tl::make_unexpected(fmt::format("unknown transport '{}'; known are udp, shm (Fast DDS) and iceoryx (Cyclone DDS)", word));
+}
+
+tl::expected<SharedMemory, std::string> shared_memory_from(std::string_view word)
+{
+    for (const auto& [choice, name] : shared_memory_words) {
+        if (word == name) return choice;
+    }
+    return tl::make_unexpected(fmt::format("unknown word '{}'; known are required, preferred and off", word));
 }
 
 std::string_view to_string(Vendor vendor)

@@ -56,6 +56,7 @@ Node::Node(NodeSettings settings, bus::Bus& bus, EventLoop& loop)
     }
     loop_.every(status_period_ns, [this] {
         look_at_endpoints();
+        look_at_shared_memory();
         publish_status();
     });
 }
@@ -131,6 +132,12 @@ void Node::look_at_endpoints()
             report(EventCode::incompatible_qos, Severity::warning_high, none, 0,
                    fmt::format("{}: a peer asks for another {}; see the QoS table in idl/README.md", endpoint.what, now.policy));
         }
+        if (now.asked != now.transport && now.asked != Transport::unknown && !endpoint.told_fallback) {
+            endpoint.told_fallback = true;
+            report(EventCode::transport_fallback, Severity::warning_high, none, 0,
+                   fmt::format("{} goes by {}: {} was asked for and is not available", endpoint.what, bus::to_string(now.transport),
+                               bus::to_string(now.asked)));
+        }
         if (now.matched > 0) endpoint.must_match = false;
         if (endpoint.must_match && !endpoint.told_unmatched && clock().steady_ns() - started_ns_ > match_patience_ns) {
             endpoint.told_unmatched = true;
@@ -139,6 +146,14 @@ void Node::look_at_endpoints()
                                endpoint.what));
         }
     }
+}
+
+void Node::look_at_shared_memory()
+{
+    if (told_shared_memory_lost_ || !bus_.shared_memory_lost()) return;
+    told_shared_memory_lost_ = true;
+    report(EventCode::shared_memory_lost, Severity::warning_high, {status_.epoch, status_.sequence}, 0,
+           "iceoryx's daemon is gone or another one: who starts from now on shares no memory with this process");
 }
 
 void Node::publish_status()

@@ -16,6 +16,12 @@ void parse_process(runtime::Section& section, const Overrides& overrides, Proces
         if (const auto transport = bus::transport_from(transport_word)) process.bus.transport = *transport;
         else section.problem("transport", transport.error());
     }
+    std::string shared_memory_word;
+    section.text("shared_memory", shared_memory_word);
+    if (!shared_memory_word.empty()) {
+        if (const auto choice = bus::shared_memory_from(shared_memory_word)) process.bus.shared_memory = *choice;
+        else section.problem("shared_memory", choice.error());
+    }
     section.text("interface", process.bus.interface);
     if (process.bus.interface == "any") process.bus.interface.clear();
     section.texts("peers", process.bus.peers);

@@ -1,5 +1,6 @@
 #include "quorient/bus/cyclonedds_bus.hpp"
 
+#include "quorient/bus/roudi.hpp"
 #include "ros2.hpp"
 #include "types.hpp"
 
@@ -7,6 +8,7 @@
 #include <dds/ddsc/dds_data_allocator.h>
 #include <dds/ddsc/dds_loan_api.h>
 #include <fmt/format.h>
+#include <algorithm>
 #include <cstring>
 #include <map>
 #include <string>
@@ -52,14 +54,18 @@ using QosHandle = std::unique_ptr<dds_qos_t, QosDeleter>;
 
 constexpr dds_duration_t reliable_blocking = DDS_MSECS(100);
 
-QosHandle to_qos(const Qos& qos, const WriterOptions* writer)
+/// As iceoryx is built (IOX_MAX_PUBLISHER_HISTORY): a writer that promises late joiners more silently goes by UDP.
+constexpr std::int32_t iceoryx_history = 16;
+
+QosHandle to_qos(const Qos& qos, const WriterOptions* writer, Transport asked)
 {
     QosHandle result{dds_create_qos()};
     auto* q = result.get();
     dds_qset_reliability(q, qos.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, reliable_blocking);
     dds_qset_durability(q, qos.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
     dds_qset_history(q, DDS_HISTORY_KEEP_LAST, qos.depth);
-    if (qos.transient_local) dds_qset_durability_service(q, 0, DDS_HISTORY_KEEP_LAST, qos.depth, -1, -1, -1);
+    const auto kept = asked == Transport::iceoryx ? std::min(qos.depth, iceoryx_history) : qos.depth;
+    if (qos.transient_local) dds_qset_durability_service(q, 0, DDS_HISTORY_KEEP_LAST, kept, -1, -1, -1);
     if (qos.latched) dds_qset_history(q, DDS_HISTORY_KEEP_ALL, 0);  // keeps shared memory off; what a late joiner gets is set above
     if (qos.exclusive) {
         dds_qset_ownership(q, DDS_OWNERSHIP_EXCLUSIVE);
@@ -98,10 +104,16 @@ Transport transport_of(dds_entity_t endpoint)
     return dds_is_shared_memory_available(endpoint) ? Transport::iceoryx : Transport::udp;
 }
 
+/// What the settings ask for on this topic: latched ones stay off iceoryx by design, owned ones by their liveliness.
+Transport asked_for(const TopicSpec& topic, Transport asked)
+{
+    return topic.qos.latched || topic.qos.exclusive || cyclonedds::is_ros2(topic.type) ? Transport::udp : asked;
+}
+
 class CycloneWriter final : public Writer {
 public:
-    CycloneWriter(Entity writer, TypeId type, std::size_t size)
-        : writer_(std::move(writer)), type_(type), size_(size), loans_(dds_is_loan_available(writer_.handle()))
+    CycloneWriter(Entity writer, const TopicSpec& topic, Transport asked)
+        : writer_(std::move(writer)), type_(topic.type), size_(topic.size), asked_(asked), loans_(dds_is_loan_available(writer_.handle()))
     {
     }
 
@@ -123,19 +135,21 @@ public:
         dds_offered_incompatible_qos_status_t incompatible{};
         dds_get_publication_matched_status(writer_.handle(), &matched);
         dds_get_offered_incompatible_qos_status(writer_.handle(), &incompatible);
-        return {matched.current_count, incompatible.total_count, policy_name(incompatible.last_policy_id), transport_of(writer_.handle())};
+        return {matched.current_count, incompatible.total_count, policy_name(incompatible.last_policy_id), transport_of(writer_.handle()),
+                asked_};
     }
 
 private:
     Entity writer_;
     TypeId type_;
     std::size_t size_;
+    Transport asked_;
     bool loans_;
 };
 
 class CycloneReader final : public Reader {
 public:
-    CycloneReader(Entity reader, TypeId type) : reader_(std::move(reader)), type_(type) {}
+    CycloneReader(Entity reader, TypeId type, Transport asked) : reader_(std::move(reader)), type_(type), asked_(asked) {}
 
     bool take(void* message) override
     {
@@ -154,18 +168,22 @@ public:
         dds_requested_incompatible_qos_status_t incompatible{};
         dds_get_subscription_matched_status(reader_.handle(), &matched);
         dds_get_requested_incompatible_qos_status(reader_.handle(), &incompatible);
-        return {matched.current_count, incompatible.total_count, policy_name(incompatible.last_policy_id), transport_of(reader_.handle())};
+        return {matched.current_count, incompatible.total_count, policy_name(incompatible.last_policy_id), transport_of(reader_.handle()),
+                asked_};
     }
 
 private:
     Entity reader_;
     TypeId type_;
+    Transport asked_;
 };
 
 class CycloneBus final : public Bus {
 public:
-    CycloneBus(Entity domain, Entity participant)
-        : domain_(std::move(domain)),
+    CycloneBus(Entity domain, Entity participant, Transport asked, bool shared)
+        : asked_(asked),
+          roudi_life_(shared ? roudi_life() : 0),
+          domain_(std::move(domain)),
           participant_(std::move(participant)),
           waitset_(checked(dds_create_waitset(participant_.handle()), "wait set"))
     {
@@ -179,22 +197,26 @@ public:
 
     Vendor vendor() const override { return Vendor::cyclonedds; }
 
+    bool shared_memory_lost() const override { return roudi_life_ != 0 && roudi_life() != roudi_life_; }
+
 private:
     std::unique_ptr<Writer> make_writer(const TopicSpec& topic, const WriterOptions& options) override
     {
-        const auto qos = to_qos(topic.qos, &options);
+        const auto asked = asked_for(topic, asked_);
+        const auto qos = to_qos(topic.qos, &options, asked);
         return std::make_unique<CycloneWriter>(
-            checked(dds_create_writer(participant_.handle(), topic_of(topic), qos.get(), nullptr), topic.name), topic.type, topic.size);
+            checked(dds_create_writer(participant_.handle(), topic_of(topic), qos.get(), nullptr), topic.name), topic, asked);
     }
 
     std::unique_ptr<Reader> make_reader(const TopicSpec& topic) override
     {
-        const auto qos = to_qos(topic.qos, nullptr);
+        const auto asked = asked_for(topic, asked_);
+        const auto qos = to_qos(topic.qos, nullptr, asked);
         auto reader = checked(dds_create_reader(participant_.handle(), topic_of(topic), qos.get(), nullptr), topic.name);
         const auto condition = dds_create_readcondition(reader.handle(), DDS_ANY_STATE);
         if (condition < 0 || dds_waitset_attach(waitset_.handle(), condition, 0) < 0)
             throw Error(fmt::format("Cyclone DDS: {}: cannot wait for data", topic.name));
-        return std::make_unique<CycloneReader>(std::move(reader), topic.type);
+        return std::make_unique<CycloneReader>(std::move(reader), topic.type, asked);
     }
 
     dds_entity_t topic_of(const TopicSpec& spec)
@@ -206,6 +228,8 @@ private:
         return topics_.emplace(spec.name, topic).first->second;
     }
 
+    Transport asked_;
+    std::uint64_t roudi_life_;
     Entity domain_;  // outlives the participant, which takes everything it made with it
     Entity participant_;
     Entity waitset_;
@@ -214,7 +238,7 @@ private:
 
 /// As Cyclone wants it. GenerateKeyhash: without it Fast DDS does not see a Cyclone endpoint leave. The short heartbeat and
 /// nack delays repair a lost sample before anybody's patience ends.
-std::string configuration(const Settings& settings)
+std::string configuration(const Settings& settings, bool shared)
 {
     std::string interface;
     if (!settings.interface.empty()) {
@@ -232,15 +256,16 @@ std::string configuration(const Settings& settings)
         "<HeartbeatInterval min=\"1ms\" minsched=\"2ms\" max=\"100ms\">{}us</HeartbeatInterval></Internal>"
         "<SharedMemory><Enable>{}</Enable><LogLevel>warn</LogLevel></SharedMemory></Domain></CycloneDDS>",
         interface, !unicast, unicast ? fmt::format("<Peers>{}</Peers>", peers) : std::string{},
-        static_cast<long>(settings.heartbeat_s * 1e6), settings.transport == Transport::iceoryx);
+        static_cast<long>(settings.heartbeat_s * 1e6), shared);
 }
 
 }  // namespace
 
 tl::expected<std::unique_ptr<Bus>, std::string> open_cyclonedds(const Settings& settings)
 {
+    const bool shared = settings.transport == Transport::iceoryx && settings.shared_memory != SharedMemory::off && roudi_answers();
     // A second bus of this process in the same domain shares the first one's domain and its configuration.
-    const auto domain = dds_create_domain(settings.domain, configuration(settings).c_str());
+    const auto domain = dds_create_domain(settings.domain, configuration(settings, shared).c_str());
     if (domain < 0 && domain != DDS_RETCODE_PRECONDITION_NOT_MET)
         return tl::make_unexpected(fmt::format("Cyclone DDS: domain {}: {}", settings.domain, dds_strretcode(-domain)));
     Entity owned_domain{domain};
@@ -250,7 +275,7 @@ tl::expected<std::unique_ptr<Bus>, std::string> open_cyclonedds(const Settings& 
     const auto participant = dds_create_participant(settings.domain, qos.get(), nullptr);
     if (participant < 0) return tl::make_unexpected(fmt::format("Cyclone DDS: participant: {}", dds_strretcode(-participant)));
     try {
-        return std::make_unique<CycloneBus>(std::move(owned_domain), Entity{participant});
+        return std::make_unique<CycloneBus>(std::move(owned_domain), Entity{participant}, settings.transport, shared);
     } catch (const Error& error) {
         return tl::make_unexpected(std::string{error.what()});
     }

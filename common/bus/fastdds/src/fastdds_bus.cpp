@@ -1,7 +1,7 @@
 #include "quorient/bus/fastdds_bus.hpp"
 
-#include "guarded_transport.hpp"
 #include "quorient/bus/interfaces.hpp"
+#include "guarded_transport.hpp"
 #include "ros2.hpp"
 #include "types.hpp"
 
@@ -57,6 +57,11 @@ std::string_view policy_name(dds::QosPolicyId_t id)
     }
 }
 
+bool shares_memory(const Settings& settings)
+{
+    return settings.transport == Transport::shared_memory && settings.shared_memory != SharedMemory::off;
+}
+
 /// What both ends of a topic share. Resource limits of 0 are "no limit": the default of ten instances is fewer than a system has services.
 template <class EndpointQos>
 void apply(const Qos& qos, const Settings& settings, EndpointQos& endpoint)
@@ -70,13 +75,22 @@ void apply(const Qos& qos, const Settings& settings, EndpointQos& endpoint)
     endpoint.resource_limits().max_samples_per_instance = 0;
     endpoint.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
     endpoint.ownership().kind = qos.exclusive ? dds::EXCLUSIVE_OWNERSHIP_QOS : dds::SHARED_OWNERSHIP_QOS;
-    if (settings.transport != Transport::shared_memory) endpoint.data_sharing().off();
+    if (!shares_memory(settings)) endpoint.data_sharing().off();
+}
+
+/// Whether Fast DDS really opened its shared memory: it goes on by UDP, and says nothing, where it could not.
+Transport transport_of(const rtps::LocatorList& locators)
+{
+    for (auto locator = locators.begin(); locator != locators.end(); ++locator) {
+        if (locator->kind == LOCATOR_KIND_SHM) return Transport::shared_memory;
+    }
+    return Transport::udp;
 }
 
 class FastWriter final : public Writer {
 public:
-    FastWriter(dds::Publisher* publisher, dds::DataWriter* writer, dds::TypeSupport type, const TopicSpec& topic, Transport transport)
-        : publisher_(publisher), writer_(writer), type_(std::move(type)), sample_(type_.create_data()), topic_(topic), transport_(transport)
+    FastWriter(dds::Publisher* publisher, dds::DataWriter* writer, dds::TypeSupport type, const TopicSpec& topic, Transport asked)
+        : publisher_(publisher), writer_(writer), type_(std::move(type)), sample_(type_.create_data()), topic_(topic), asked_(asked)
     {
     }
     ~FastWriter() override
@@ -100,8 +114,10 @@ public:
         dds::OfferedIncompatibleQosStatus incompatible;
         writer_->get_publication_matched_status(matched);
         writer_->get_offered_incompatible_qos_status(incompatible);
+        rtps::LocatorList locators;
+        writer_->get_sending_locators(locators);
         return {static_cast<std::uint32_t>(matched.current_count), incompatible.total_count, policy_name(incompatible.last_policy_id),
-                transport_};
+                transport_of(locators), asked_};
     }
 
 private:
@@ -110,20 +126,20 @@ private:
     dds::TypeSupport type_;
     void* sample_;
     TopicSpec topic_;
-    Transport transport_;
+    Transport asked_;
 };
 
 class FastReader final : public Reader {
 public:
     FastReader(dds::Subscriber* subscriber, dds::DataReader* reader, dds::WaitSet& waitset, dds::TypeSupport type, const TopicSpec& topic,
-               Transport transport)
+               Transport asked)
         : subscriber_(subscriber),
           reader_(reader),
           waitset_(waitset),
           type_(std::move(type)),
           sample_(type_.create_data()),
           topic_(topic),
-          transport_(transport)
+          asked_(asked)
     {
         reader_->get_statuscondition().set_enabled_statuses(dds::StatusMask::data_available());
         waitset_.attach_condition(reader_->get_statuscondition());
@@ -153,8 +169,10 @@ public:
         dds::RequestedIncompatibleQosStatus incompatible;
         reader_->get_subscription_matched_status(matched);
         reader_->get_requested_incompatible_qos_status(incompatible);
+        rtps::LocatorList locators;
+        reader_->get_listening_locators(locators);
         return {static_cast<std::uint32_t>(matched.current_count), incompatible.total_count, policy_name(incompatible.last_policy_id),
-                transport_};
+                transport_of(locators), asked_};
     }
 
 private:
@@ -164,7 +182,7 @@ private:
     dds::TypeSupport type_;
     void* sample_;
     TopicSpec topic_;
-    Transport transport_;
+    Transport asked_;
 };
 
 class FastBus final : public Bus {
@@ -281,8 +299,7 @@ void add_transports(const Settings& settings, dds::TransportConfigQos& transport
     const auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
     if (!settings.interface.empty()) udp->interfaceWhiteList = addresses_of(settings.interface);
     transports.user_transports.push_back(fastdds::guarded(udp));
-    if (settings.transport == Transport::shared_memory)
-        transports.user_transports.push_back(std::make_shared<rtps::SharedMemTransportDescriptor>());
+    if (shares_memory(settings)) transports.user_transports.push_back(std::make_shared<rtps::SharedMemTransportDescriptor>());
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ struct EndpointStatus {
     std::uint32_t matched = 0;
     std::uint32_t incompatible = 0;            ///< peers that asked for a QoS that this endpoint does not have, in total
     std::string_view policy{};                 ///< name of the policy of the latest of them
-    Transport transport = Transport::unknown;  ///< really in use
+    Transport transport = Transport::unknown;  ///< really in use at this end; a peer without it is served by UDP
+    Transport asked = Transport::unknown;      ///< by the settings, for a topic like this one
 };
 
 /// What a vendor implements. One thread uses a bus and all that it made.
@@ -93,6 +94,10 @@ public:
     virtual void wait(std::int64_t timeout_ns) = 0;
 
     virtual Vendor vendor() const = 0;
+
+    /// Whether the shared memory that this bus joined has lost its daemon. Samples go on between those who share it already; who starts
+    /// later is not among them.
+    virtual bool shared_memory_lost() const { return false; }
 
 private:
     virtual std::unique_ptr<Writer> make_writer(const TopicSpec& topic, const WriterOptions& options) = 0;

@@ -10,6 +10,13 @@
 
 namespace quorient::bus {
 
+/// What to do about shared memory that the settings ask for.
+enum class SharedMemory : std::uint8_t {
+    required,   ///< refuse to start without it
+    preferred,  ///< UDP where it is not there, with an alarm
+    off,        ///< UDP, with an alarm: for a process that comes back after the others' shared memory was lost
+};
+
 /// How one process joins the bus.
 struct Settings {
     Vendor vendor = Vendor::cyclonedds;
@@ -17,15 +24,17 @@ struct Settings {
     std::string interface = "lo";          ///< name, IPv4 address, or subnet base address; empty = the vendor's choice
     std::vector<std::string> peers;        ///< IPv4 addresses for unicast discovery; empty = multicast
     Transport transport = Transport::udp;  ///< udp, shared_memory (Fast DDS) or iceoryx (Cyclone DDS)
-    std::string participant;               ///< name shown to other tools
-    double heartbeat_s = 0.0025;           ///< of reliable writers: at most half a frame interval
-    double voted_lease_s = 0.05;           ///< that a reader of `voted` asks for: at least the writers'
-    bool security = false;                 ///< DDS Security asked for; refused together with shared memory
+    SharedMemory shared_memory = SharedMemory::required;
+    std::string participant;      ///< name shown to other tools
+    double heartbeat_s = 0.0025;  ///< of reliable writers: at most half a frame interval
+    double voted_lease_s = 0.05;  ///< that a reader of `voted` asks for: at least the writers'
+    bool security = false;        ///< DDS Security asked for; refused together with shared memory
 };
 
 /// @returns an error that lists the words, e.g. for "opendds".
 tl::expected<Vendor, std::string> vendor_from(std::string_view word);
 tl::expected<Transport, std::string> transport_from(std::string_view word);
+tl::expected<SharedMemory, std::string> shared_memory_from(std::string_view word);
 std::string_view to_string(Vendor vendor);
 std::string_view to_string(Transport transport);
 

@@ -52,7 +52,7 @@ public:
     /// Counts a handled frame: heartbeat, identity, and the time since its arrival.
     void handled(Identity identity, std::int64_t arrival_ns);
 
-    /// Warns when this endpoint meets an incompatible peer, and when it matched nobody within 5 s.
+    /// Warns when this endpoint meets an incompatible peer, when it matched nobody within 5 s, and when it has not the transport asked for.
     void watch(std::string_view what, std::function<bus::EndpointStatus()> status, bool must_match);
 
     /// The endpoint whose transport and peers the status tells.
@@ -73,10 +73,12 @@ private:
         bool must_match;  ///< and has not yet
         std::uint32_t incompatible = 0;
         bool told_unmatched = false;
+        bool told_fallback = false;
     };
 
     void publish_status();
     void look_at_endpoints();
+    void look_at_shared_memory();
 
     NodeSettings settings_;
     bus::Bus& bus_;
@@ -92,6 +94,7 @@ private:
     std::size_t latency_count_ = 0;
     std::vector<Watched> watched_;
     std::function<bus::EndpointStatus()> main_output_;
+    bool told_shared_memory_lost_ = false;
     std::int64_t started_ns_;
 };
 
