@@ -52,6 +52,13 @@ void Processes::add(std::string name, std::vector<std::string> command, std::str
     children_.push_back({.name = std::move(name), .command = std::move(command), .log_file = std::move(log_file), .daemon = daemon});
 }
 
+void Processes::add_arguments(const std::vector<std::string>& arguments)
+{
+    for (auto& child : children_) {
+        if (!child.daemon) child.command.insert(child.command.end(), arguments.begin(), arguments.end());
+    }
+}
+
 void Processes::start()
 {
     for (auto& child : children_) {
@@ -67,7 +74,7 @@ std::vector<std::string> Processes::look(std::int64_t now_ns)
         if (child.process > 0 && ::waitpid(child.process, &status, WNOHANG) == child.process) {
             child.process = -1;
             child.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-            child.ended = child.exit_code == 0 || child.exit_code == 2 || child.exit_code == 127;
+            child.ended = child.daemon || child.exit_code == 0 || child.exit_code == 2 || child.exit_code == 127;
             child.restart_at_ns = now_ns + restart_delay_ns;
             died.push_back(child.name);
         }

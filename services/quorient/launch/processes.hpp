@@ -12,7 +12,7 @@ struct Child {
     std::string name;
     std::vector<std::string> command;
     std::string log_file;
-    bool daemon = false;  ///< serves the others: stopped after them
+    bool daemon = false;  ///< serves the others: stopped after them, and not started again (what they share is gone with it)
     pid_t process = -1;
     int restarts = 0;
     bool ended = false;  ///< in order (exit 0) or for good (exit 2: a restart cannot help)
@@ -27,6 +27,9 @@ public:
 
     /// Started again whenever it dies, unless it ended in order or with exit code 2.
     void add(std::string name, std::vector<std::string> command, std::string log_file, bool daemon = false);
+
+    /// For every later start of those that are no daemons.
+    void add_arguments(const std::vector<std::string>& arguments);
 
     /// Starts those that do not run yet.
     void start();

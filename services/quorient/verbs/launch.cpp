@@ -1,9 +1,9 @@
 #include "../launch/processes.hpp"
+#include "../launch/roudi.hpp"
 #include "../launch/screen.hpp"
 #include "../live/run_observer.hpp"
 #include "../live/summary.hpp"
 #include "json_output.hpp"
-#include "quorient/bus/roudi.hpp"
 #include "quorient/runtime/event_loop.hpp"
 #include "quorient/runtime/heartbeat.hpp"
 #include "quorient/runtime/signals.hpp"
@@ -69,37 +69,6 @@ void add_processes(const system::System& system, const SystemOptions& options, l
     add("quorient-sensor", system.sensor.process.node.name);
 }
 
-/// Lanes and voters that share memory through iceoryx, counted as endpoints.
-std::size_t iceoryx_processes(const system::System& system)
-{
-    std::size_t count = 0;
-    const auto look = [&](const system::ProcessSettings& process) { count += process.bus.transport == Transport::iceoryx ? 1 : 0; };
-    look(system.sensor.process);
-    for (const auto& lane : system.lanes) {
-        look(lane.detector.process);
-        look(lane.integrator.process);
-    }
-    for (const auto& voter : system.voters) look(voter.process);
-    return count;
-}
-
-/// iceoryx's daemon, where the system needs it and none runs. @returns whether it answers.
-bool start_roudi(std::size_t participants, launch::Processes& processes)
-{
-    if (participants == 0 || bus::roudi_answers()) return true;
-    constexpr std::size_t endpoints_each = 8;
-    const auto configuration = runtime::run_directory() / "roudi.toml";
-    std::ofstream{configuration} << bus::roudi_configuration(participants * endpoints_each, participants * endpoints_each);
-    processes.add("roudi", {"/usr/bin/iox-roudi", "-c", configuration.string()}, (runtime::run_directory() / "roudi.log").string(), true);
-    processes.start();
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds{5};
-    while (!bus::roudi_answers()) {
-        if (std::chrono::steady_clock::now() > deadline) return false;
-        std::this_thread::sleep_for(std::chrono::milliseconds{10});
-    }
-    return true;
-}
-
 /// One run from start to summary.
 class Run {
 public:
@@ -118,7 +87,7 @@ public:
         loop_.on(bus.subscribe(bus::topics::voter_output), [this](const VotedAttitude& m) { observer_.on_voted(m); });
         loop_.on(bus.subscribe(bus::topics::event), [this](const HealthEvent& m) { screen_.on_event(m); });
         prepare_run_directory();
-        roudi_answers_ = start_roudi(iceoryx_processes(system), processes_);
+        roudi_answers_ = roudi_.start(system, processes_);
         add_processes(system, options.system, processes_);
     }
 
@@ -142,8 +111,13 @@ public:
 private:
     void look_at_processes(runtime::Timer& end)
     {
+        if (roudi_.lost()) {
+            fmt::print(stderr, "iceoryx's daemon is gone or another one: what starts from now on goes by UDP\n");
+            processes_.add_arguments({"--set", "shared_memory=off"});
+        }
         for (const auto& name : processes_.look(clock_.steady_ns())) {
             const auto& child = *processes_.find(name);
+            if (child.daemon) continue;
             if (name == system_.sensor.process.node.name && child.exit_code == 0) end.set(clock_.steady_ns() + linger_ns);
             else if (child.exit_code != 0) tell_death(child);
         }
@@ -176,6 +150,7 @@ private:
     launch::Screen screen_;
     runtime::EventLoop loop_;
     launch::Processes processes_;
+    launch::Roudi roudi_;
     bool roudi_answers_ = true;
     bool failed_ = false;
 };

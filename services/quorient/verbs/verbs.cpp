@@ -11,6 +11,7 @@ void add_verbs(CLI::App& program)
     add_readmit(program);
     add_reset(program);
     add_health(program);
+    add_clean(program);
     add_record(program);
     add_replay(program);
     add_layout(program);

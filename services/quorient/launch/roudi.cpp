@@ -1,0 +1,58 @@
+#include "roudi.hpp"
+
+#include "quorient/bus/roudi.hpp"
+#include "quorient/runtime/heartbeat.hpp"
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+namespace quorient::launch {
+
+namespace {
+
+constexpr auto patience = std::chrono::seconds{5};
+constexpr std::size_t endpoints_each = 8;
+
+std::size_t iceoryx_processes(const system::System& system)
+{
+    std::size_t count = 0;
+    const auto look = [&](const system::ProcessSettings& process) { count += process.bus.transport == Transport::iceoryx ? 1 : 0; };
+    look(system.sensor.process);
+    for (const auto& lane : system.lanes) {
+        look(lane.detector.process);
+        look(lane.integrator.process);
+    }
+    for (const auto& voter : system.voters) look(voter.process);
+    return count;
+}
+
+}  // namespace
+
+bool Roudi::start(const system::System& system, Processes& processes)
+{
+    const auto participants = iceoryx_processes(system);
+    if (participants == 0) return true;
+    if (!bus::roudi_answers()) {
+        const auto configuration = runtime::run_directory() / "roudi.toml";
+        std::ofstream{configuration} << bus::roudi_configuration(participants * endpoints_each, participants * endpoints_each);
+        processes.add("roudi", {"/usr/bin/iox-roudi", "-c", configuration.string()}, (runtime::run_directory() / "roudi.log").string(),
+                      true);
+        processes.start();
+    }
+    const auto deadline = std::chrono::steady_clock::now() + patience;
+    while ((life_ = bus::roudi_life()) == 0) {
+        if (std::chrono::steady_clock::now() > deadline) return false;
+        std::this_thread::sleep_for(std::chrono::milliseconds{10});
+    }
+    return true;
+}
+
+bool Roudi::lost()
+{
+    if (life_ == 0 || bus::roudi_life() == life_) return false;
+    life_ = 0;
+    return true;
+}
+
+}  // namespace quorient::launch

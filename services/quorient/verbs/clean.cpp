@@ -1,0 +1,160 @@
+#include "quorient/bus/roudi.hpp"
+#include "quorient/runtime/heartbeat.hpp"
+#include "verbs.hpp"
+
+#include <fmt/format.h>
+#include <grp.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace quorient::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Paths that some process has open or mapped, with the process's name. Without root's rights: of this user's processes.
+class LiveFiles {
+public:
+    LiveFiles()
+    {
+        std::error_code gone;  // processes end while they are looked at
+        for (fs::directory_iterator process{"/proc", gone}, end; !gone && process != end; process.increment(gone)) {
+            const auto id = process->path().filename().string();
+            if (id.find_first_not_of("0123456789") == std::string::npos && id != std::to_string(::getpid())) look(process->path());
+        }
+    }
+
+    /// @returns "name (id)" of a process that uses the file; empty where none does.
+    std::string owner(const fs::path& file) const
+    {
+        // A socket has no path among the open files; its lock beside it has.
+        for (const auto& path : {file.string(), file.string() + ".lock"}) {
+            if (const auto found = owners_.find(path); found != owners_.end()) return found->second;
+        }
+        return {};
+    }
+
+private:
+    void look(const fs::path& process)
+    {
+        std::string name;
+        std::ifstream comm{process / "comm"};
+        std::getline(comm, name);
+        const auto owner = fmt::format("{} ({})", name, process.filename().string());
+        std::error_code gone;
+        for (fs::directory_iterator entry{process / "fd", gone}, end; !gone && entry != end; entry.increment(gone)) {
+            std::error_code closed;
+            owners_.try_emplace(fs::read_symlink(entry->path(), closed).string(), owner);
+        }
+        std::ifstream maps{process / "maps"};
+        for (std::string line; std::getline(maps, line);) {
+            if (const auto path = line.find('/'); path != std::string::npos) owners_.try_emplace(line.substr(path), owner);
+        }
+    }
+
+    std::map<std::string, std::string> owners_;
+};
+
+/// After which RouDi names its segment.
+std::string group_name()
+{
+    const auto* group = ::getgrgid(::getegid());
+    return group ? group->gr_name : "";
+}
+
+bool starts_with_any(const std::string& name, std::initializer_list<const char*> prefixes)
+{
+    for (const char* prefix : prefixes) {
+        if (name.starts_with(prefix)) return true;
+    }
+    return false;
+}
+
+bool is_mine(const fs::path& file)
+{
+    struct stat status {};
+    return ::lstat(file.c_str(), &status) == 0 && status.st_uid == ::geteuid();
+}
+
+template <class Predicate>
+void collect(const fs::path& folder, Predicate chosen, std::set<fs::path>& found)
+{
+    std::error_code unreadable;
+    for (fs::directory_iterator entry{folder, unreadable}, end; !unreadable && entry != end; entry.increment(unreadable)) {
+        if (chosen(entry->path().filename().string()) && is_mine(entry->path())) found.insert(entry->path());
+    }
+}
+
+/// What Fast DDS, iceoryx and our processes leave when they are killed.
+std::set<fs::path> leftovers()
+{
+    std::set<fs::path> found;
+    collect(
+        "/dev/shm",
+        [](const std::string& name) {
+            return starts_with_any(name, {"fastrtps_", "fast_datasharing_", "sem.fastrtps_"});
+        },
+        found);
+    collect(
+        runtime::run_directory(), [](const std::string& name) { return name.ends_with(".heartbeat") || name == "roudi.toml"; }, found);
+    if (bus::roudi_answers()) return found;  // its files and its clients' are in use
+    collect(
+        "/dev/shm", [](const std::string& name) { return name == "iceoryx_mgmt"; }, found);
+    if (found.contains("/dev/shm/iceoryx_mgmt")) {
+        const auto group = fs::path{"/dev/shm"} / group_name();
+        if (is_mine(group)) found.insert(group);
+    }
+    collect(
+        "/tmp", [](const std::string& name) { return name == "roudi" || name == "roudi.lock" || name.starts_with("iceoryx_rt_"); }, found);
+    return found;
+}
+
+struct CleanOptions {
+    bool dry_run = false;
+};
+
+int clean(const CleanOptions& options)
+{
+    const LiveFiles live;
+    int kept = 0;
+    for (const auto& file : leftovers()) {
+        if (const auto owner = live.owner(file); !owner.empty()) {
+            fmt::print(stderr, "kept {}: {} uses it\n", file.string(), owner);
+            ++kept;
+            continue;
+        }
+        std::error_code refused;
+        if (!options.dry_run) fs::remove(file, refused);
+        if (refused) {
+            fmt::print(stderr, "kept {}: {}\n", file.string(), refused.message());
+            ++kept;
+        } else {
+            fmt::print("{}\n", file.string());
+        }
+    }
+    return kept == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+void add_clean(CLI::App& program)
+{
+    auto* verb = program.add_subcommand("clean", "Remove what killed processes left: shared memory, sockets, heartbeats");
+    auto options = std::make_shared<CleanOptions>();
+    verb->add_flag("--dry-run", options->dry_run, "Only print what would be removed");
+    verb->footer(
+        "Removes files of this user that no running process uses: Fast DDS's and iceoryx's in /dev/shm, iceoryx's sockets in /tmp, and the "
+        "heartbeats in the run directory; logs stay. What is in use is kept and named, exit code 1.\nExample:\n  quorient clean --dry-run");
+    verb->callback([options] {
+        if (const int exit_code = clean(*options); exit_code != 0) throw CLI::RuntimeError(exit_code);
+    });
+}
+
+}  // namespace quorient::cli
