@@ -1,0 +1,304 @@
+#!/usr/bin/env python3
+"""Measures the latency of real pipelines beside their floors, in turns, and writes JSON and a table.
+
+    sudo nice -n -15 integration_tests/latency/run.py            # everything, about ten minutes
+    integration_tests/latency/run.py --only hops,transports --rounds 1 --seconds 1
+
+Every ratio is of two runs that stand beside each other in time; of the rounds the median counts."""
+import argparse
+import json
+import os
+import pathlib
+import platform
+import shutil
+import socket
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+import table
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+BIN = pathlib.Path(os.environ.get("QUORIENT_BIN", ROOT / "build/release/bin"))
+TICK_S = 1 / os.sysconf("SC_CLK_TCK")
+PAGE_MIB = os.sysconf("SC_PAGE_SIZE") / 2**20
+START_PATIENCE_S = 15
+
+# Name -> the keys of the system file for sensor, lanes and voters in turn, and the floor's arguments.
+TRANSPORTS = {
+    "UDP, Cyclone DDS": ([{"dds": "cyclonedds"}], ["--dds", "cyclonedds"]),
+    "UDP, Fast DDS": ([{"dds": "fastdds"}], ["--dds", "fastdds"]),
+    "shared memory, Fast DDS": ([{"dds": "fastdds", "transport": "shm"}], ["--dds", "fastdds", "--shared-memory"]),
+    "iceoryx, Cyclone DDS": ([{"dds": "cyclonedds", "transport": "iceoryx"}], ["--dds", "cyclonedds", "--shared-memory"]),
+    "mixed": ([{"dds": "cyclonedds", "transport": "iceoryx"}, {"dds": "fastdds", "transport": "shm"}, {"dds": "cyclonedds"}], None),
+}
+LAYOUTS = {4: "cone-4", 6: "cone-6", 8: "octahedron-8", 24: "triads-8"}
+PINGS = (("cyclonedds", "udp"), ("fastdds", "udp"), ("fastdds", "shm"), ("cyclonedds", "iceoryx"))
+
+
+class Roudi:
+    """iceoryx's daemon for as long as the measurement lasts, unless one runs."""
+
+    def __init__(self):
+        self.process = None
+
+    def __enter__(self):
+        if not self.answers():
+            pools = "".join(f"[[segment.mempool]]\nsize = {size}\ncount = {count}\n" for size, count in ((1024, 12000), (2688, 500), (16384, 64)))
+            file = pathlib.Path(tempfile.mkstemp(suffix=".toml")[1])
+            file.write_text("[general]\nversion = 1\n[[segment]]\n" + pools)
+            self.process = subprocess.Popen(["iox-roudi", "-c", file], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            while not self.answers():
+                time.sleep(0.02)
+        return self
+
+    def __exit__(self, *_):
+        if self.process:
+            self.process.terminate()
+            self.process.wait()
+
+    @staticmethod
+    def answers():
+        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as probe:
+            return probe.connect_ex("/tmp/roudi") == 0
+
+
+class Usage:
+    """CPU and memory of processes between two looks."""
+
+    def __init__(self, processes):
+        self.processes = processes
+        self.begin = self.look()
+        self.begin_s = time.monotonic()
+
+    def look(self):
+        found = {}
+        for name, process in self.processes.items():
+            try:
+                fields = pathlib.Path(f"/proc/{process.pid}/stat").read_text().rsplit(")", 1)[1].split()
+                pages = int(pathlib.Path(f"/proc/{process.pid}/statm").read_text().split()[1])
+            except (FileNotFoundError, ProcessLookupError):
+                continue
+            found[name] = ((int(fields[11]) + int(fields[12])) * TICK_S, pages * PAGE_MIB)
+        return found
+
+    def end(self):
+        seconds = time.monotonic() - self.begin_s
+        return {
+            name: {"cpu_percent": 100 * (cpu - self.begin[name][0]) / seconds, "rss_mib": rss}
+            for name, (cpu, rss) in self.look().items() if name in self.begin
+        }
+
+
+def system_file(directory, case, domain, unit, seconds):
+    keys = TRANSPORTS[case["transport"]][0]
+    at = lambda place: dict(keys[place % len(keys)])  # noqa: E731
+    # A core for every process is more than this machine has: only a lane's own processes spin.
+    common = {"stamps": True, "spin": case.get("spin", False)}
+    axes = case.get("axes", 4)
+    method = {"method": "vector"} if axes == 4 else {}  # the default of the layout
+    system = {
+        "name": "latency", "domain": domain, "interface": "lo", **common,
+        "unit": {"id": unit, "layout": LAYOUTS[axes]},
+        "sensor": at(0),
+        "source": {
+            "motion": {"kind": "coning", "k2": 0.084, "k3": 0.05}, "rate_hz": case["rate_hz"], "duration_s": seconds,
+            "quantum_rad": 0.4848e-6, "quantize": "carry",
+        },
+        "lanes": [{"name": f"l{i}", "detector": method, **at(i)} for i in range(case.get("lanes", 3))],
+        "voters": [{"name": f"voter-{i + 1}", **at(i)} for i in range(case.get("voters", 2))],
+    }
+    path = directory / f"system-{unit}.yaml"
+    path.write_text(json.dumps(system))  # JSON is YAML
+    return path
+
+
+def our_commands(file, case, prefix=""):
+    names = [("quorient-voter", f"voter-{i + 1}") for i in range(case.get("voters", 2))]
+    for i in range(case.get("lanes", 3)):
+        names += [("quorient-attitude", f"attitude-l{i}"), ("quorient-fdi", f"fdi-l{i}")]
+    return {prefix + name: [BIN / program, file, "--name", name] for program, name in [*names, ("quorient-sensor", "sensor")]}
+
+
+def floor_commands(case, domain, seconds):
+    base = [BIN / "quorient-latency-graph"]
+    lanes, voters = case.get("lanes", 3), case.get("voters", 2)
+    common = [*TRANSPORTS[case["transport"]][1], "--domain", domain, "--lanes", lanes, "--voters", voters]
+    common += ["--spin"] if case.get("spin") else []
+    commands = {f"voter-{i + 1}": [*base, "voter", "--number", i + 1, *common] for i in range(voters)}
+    for i in range(lanes):
+        commands[f"attitude-l{i}"] = [*base, "integrator", "--number", i, *common]
+        commands[f"fdi-l{i}"] = [*base, "detector", "--number", i, *common]
+    commands["sensor"] = [*base, "sensor", *common, "--rate", case["rate_hz"], "--duration", seconds]
+    return commands
+
+
+class Runner:
+    def __init__(self, options):
+        self.options = options
+        self.directory = pathlib.Path(tempfile.mkdtemp(prefix="quorient-latency-"))
+        self.domain = options.domain
+
+    def run(self, commands, domain, case, seconds):
+        """One run until its sensors have ended. @returns the probe's report with the processes' usage."""
+        vendor = TRANSPORTS[case["transport"]][0][0]["dds"]
+        environment = dict(os.environ, QUORIENT_RUN_DIR=str(self.directory))
+        skip = int(0.2 * seconds * case["rate_hz"])  # caches, branch predictors and the last matches
+        probe = subprocess.Popen(
+            list(map(str, [BIN / "quorient-latency-probe", "--dds", vendor, "--domain", domain, "--skip", skip, "--interval", 1 / case["rate_hz"]])),
+            stdout=subprocess.PIPE, text=True, env=environment,
+        )
+        processes = {
+            name: subprocess.Popen(list(map(str, command)), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment)
+            for name, command in commands.items()
+        }
+        sensors = [process for name, process in processes.items() if name.endswith("sensor")]
+        try:
+            time.sleep(self.options.settle + 0.2 * seconds)
+            usage = Usage(processes)
+            time.sleep(0.5 * seconds)
+            used = usage.end()
+            for sensor in sensors:
+                sensor.wait(timeout=START_PATIENCE_S + seconds)
+            time.sleep(0.1)
+        finally:
+            for process in [*processes.values(), probe]:
+                if process.poll() is None:
+                    process.terminate()
+            for process in processes.values():
+                try:
+                    process.wait(timeout=5)
+                except subprocess.TimeoutExpired:
+                    process.kill()
+                    process.wait()
+        report = json.loads(probe.communicate(timeout=20)[0])
+        report["processes"] = used
+        report["expected"] = int(round(seconds * case["rate_hz"])) * case.get("units", 1) - skip * case.get("units", 1)
+        return report
+
+    def ours(self, case, seconds):
+        self.domain = self.options.domain + (self.domain - self.options.domain + 1) % 8
+        commands = {}
+        for unit in range(1, case.get("units", 1) + 1):
+            file = system_file(self.directory, case, self.domain, unit, seconds)
+            commands.update(our_commands(file, case, f"{unit}/" if case.get("units", 1) > 1 else ""))
+        return self.run(commands, self.domain, case, seconds)
+
+    def floor(self, case, seconds):
+        self.domain = self.options.domain + (self.domain - self.options.domain + 1) % 8
+        return self.run(floor_commands(case, self.domain, seconds), self.domain, case, seconds)
+
+    def in_turns(self, case):
+        """Ours and its floor by turns."""
+        rounds = []
+        for turn in range(self.options.rounds):
+            entry = {"ours": self.ours(case, self.options.seconds)}
+            if TRANSPORTS[case["transport"]][1]:
+                entry["floor"] = self.floor(case, self.options.seconds)
+            rounds.append(entry)
+            tell(case, turn, entry)
+        return {"case": case, "rounds": rounds}
+
+
+def tell(case, turn, entry):
+    parts = [f"{name} p50 {r['hops']['sensor_to_voted']['p50']:.0f} us, lost {r['lost']}" if r["hops"]["sensor_to_voted"] else f"{name}: nothing" for name, r in entry.items()]
+    print(f"{case} round {turn + 1}: {'; '.join(parts)}", file=sys.stderr, flush=True)
+
+
+def hops(runner):
+    results = []
+    for vendor, transport in PINGS:
+        command = [BIN / "quorient-latency-ping", "--dds", vendor, "--transport", transport, "--domain", runner.options.domain + 8,
+                   "--rounds", max(3, runner.options.rounds), "--per-round", runner.options.pings]
+        done = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=180)
+        if done.returncode:
+            print(done.stderr, file=sys.stderr)
+            continue
+        results.append(json.loads(done.stdout))
+        print(vendor, transport, {name: value["p50"] for name, value in results[-1]["rounds"][0].items()}, file=sys.stderr, flush=True)
+    return results
+
+
+def transports(runner):
+    cases = [{"transport": name, "rate_hz": rate} for rate in (200, 1000) for name in TRANSPORTS]
+    return [runner.in_turns(case) for case in cases]
+
+
+def spinning(runner):
+    return [runner.in_turns({"transport": "UDP, Cyclone DDS", "rate_hz": 1000, "lanes": 1, "voters": 1, "spin": spin}) for spin in (False, True)]
+
+
+def sustained(runner):
+    """One minute at 1 kHz, then faster until frames are lost."""
+    case = {"transport": "UDP, Cyclone DDS", "rate_hz": 1000}
+    minute = {"case": case, "seconds": runner.options.minute, "report": runner.ours(case, runner.options.minute)}
+    ladder = []
+    for rate in (1500, 2000, 3000, 4000, 6000):
+        report = runner.ours({**case, "rate_hz": rate}, runner.options.seconds)
+        ladder.append({"rate_hz": rate, "report": report})
+        if table.lost(report) > 0.001 * report["expected"]:
+            break
+    return {"minute": minute, "ladder": ladder}
+
+
+def growth(runner):
+    base = {"transport": "UDP, Cyclone DDS", "rate_hz": 200}
+    cases = [{**base, "lanes": lanes} for lanes in (1, 3, 5, 7)]
+    cases += [{**base, "axes": axes} for axes in LAYOUTS]
+    cases += [{**base, "lanes": 1, "voters": 1, "units": units} for units in (1, 4, 16)]
+    results = []
+    for case in cases:
+        report = runner.ours(case, runner.options.seconds)
+        results.append({"case": case, "rounds": [{"ours": report}]})
+        tell(case, 0, {"ours": report})
+    return results
+
+
+def version(package):
+    done = subprocess.run(["dpkg-query", "-W", "-f", "${Version}", package], capture_output=True, text=True)
+    return done.stdout or "not from a package"
+
+
+def machine(options):
+    model = next((line.split(":")[1].strip() for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")), "?")
+    return {
+        "processor": model, "cores": os.cpu_count(), "kernel": platform.release(), "load_before": os.getloadavg(), "nice": os.nice(0),
+        "versions": {name: version(package) for name, package in (("Fast DDS", "libfastrtps2.9"), ("Cyclone DDS", "cyclonedds-dev"), ("iceoryx", "iceoryx"))},
+        "rounds": options.rounds, "seconds": options.seconds, "command": " ".join(["integration_tests/latency/run.py", *sys.argv[1:]]),
+        "date": time.strftime("%Y-%m-%d", time.gmtime()),
+    }
+
+
+SECTIONS = {"hops": hops, "transports": transports, "sustained": sustained, "growth": growth, "spinning": spinning}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", default=",".join(SECTIONS), help="of " + ",".join(SECTIONS))
+    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--seconds", type=float, default=2.5, help="of frames in each run")
+    parser.add_argument("--settle", type=float, default=1.2, help="seconds that a pipeline takes to start, before its CPU time counts")
+    parser.add_argument("--minute", type=float, default=60, help="seconds of the long run at 1 kHz")
+    parser.add_argument("--pings", type=int, default=1000, help="of each path in each round")
+    parser.add_argument("--domain", type=int, default=30, help="this one and the nine after it")
+    parser.add_argument("--out", type=pathlib.Path, default=HERE.parent / "results/latency", help="NAME: writes NAME.json and NAME.md")
+    options = parser.parse_args()
+    results = {"machine": machine(options)}
+    runner = Runner(options)
+    try:
+        with Roudi():
+            for name in options.only.split(","):
+                results[name] = SECTIONS[name](runner)
+    finally:
+        shutil.rmtree(runner.directory, ignore_errors=True)
+        options.out.parent.mkdir(parents=True, exist_ok=True)
+        options.out.with_suffix(".json").write_text(json.dumps(results, indent=1) + "\n")
+        options.out.with_suffix(".md").write_text(table.markdown(results))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
