@@ -8,10 +8,20 @@
 #include "quorient/runtime/words.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <numeric>
 
 namespace quorient::detector {
 
 namespace {
+
+AxisMask all_candidates(const FaultVerdict& verdict)
+{
+    const auto end = verdict.candidate_set.begin() + std::min<std::ptrdiff_t>(verdict.candidate_count, std::ssize(verdict.candidate_set));
+    return std::accumulate(verdict.candidate_set.begin(), end, AxisMask{0}, std::bit_or<>{});
+}
 
 constexpr std::int64_t readiness_period_ns = 20'000'000;
 constexpr unsigned most_unheard_looks = 100;  // 2 s, less than a publisher waits
@@ -152,9 +162,9 @@ void ParityFdi::tell_changes(const FaultVerdict& verdict)
     const auto reason = monitor_->detector().reason();
     switch (static_cast<VerdictState>(verdict.state)) {
         case VerdictState::ambiguous:
-            node_.report_throttled(
-                EventCode::ambiguous, Severity::warning_high, identity, verdict.suspect_mask,
-                fmt::format("AMBIGUOUS: {} candidate sets, one of {} is faulty", verdict.candidate_count, describe(verdict.suspect_mask)));
+            node_.report_throttled(EventCode::ambiguous, Severity::warning_high, identity, verdict.suspect_mask,
+                                   fmt::format("AMBIGUOUS: {} candidate sets, one of {} is faulty", verdict.candidate_count,
+                                               describe(all_candidates(verdict))));
             break;
         case VerdictState::blind:
             node_.report_throttled(EventCode::blind, Severity::warning_high, identity, 0,
