@@ -64,15 +64,14 @@ class LiveVerbs(ProcessTest):
         file = self.run_directory / "capture.pcapng"
         file.touch()
         file.chmod(0o666)  # the capture may run as another user
-        tshark = subprocess.Popen(
-            ["tshark", "-i", "lo", "-a", "duration:3", "-f", f"udp portrange {7400 + 250 * self.domain}-{7400 + 250 * self.domain + 80}", "-w", file],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        )
+        ports = f"udp portrange {7400 + 250 * self.domain}-{7400 + 250 * self.domain + 80}"
+        tshark = subprocess.Popen(["tshark", "-i", "lo", "-f", ports, "-w", file], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.processes.append(tshark)
-        started = tshark.stderr.readline() + tshark.stderr.readline()
-        if "permission" in started.lower():
+        self.eventually(lambda: file.stat().st_size > 10_000 or tshark.poll() is not None, "the capture has begun")
+        if tshark.poll() is not None:
             self.skipTest("capturing on loopback is not permitted")
         self.echo("voter_output", 5)  # discovery speaks the names to whoever joins
+        tshark.send_signal(signal.SIGINT)
         tshark.communicate(timeout=60)
         decoded = subprocess.run(
             ["tshark", "-r", file, "-Y", "rtps.param.topicName", "-T", "fields", "-e", "rtps.param.topicName", "-e", "rtps.param.typeName"], capture_output=True, text=True, timeout=60
