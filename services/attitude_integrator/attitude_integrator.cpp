@@ -211,6 +211,9 @@ void AttitudeIntegrator::on_voted(const VotedAttitude& voted)
     if (voted.unit != settings_.process.node.unit || (voted_ && identity_of(voted) < identity_of(*voted_))) return;
     voted_ = voted;
     if (!integrator_) return;
+    const bool vouched =
+        voted.level == static_cast<std::uint8_t>(VoteLevel::full) || voted.level == static_cast<std::uint8_t>(VoteLevel::degraded);
+    if (vouched && voted.primary_lane != settings_.integration.lane) integrator_->let_go(~voted.isolated_mask);
     if (is(integrator_->state(), AttitudeMode::initialising)) integrator_->seed(voted);
     else if (absent_until_ && identity_of(voted) >= *absent_until_) rejoin(voted);
 }

@@ -30,8 +30,9 @@ Integrator::Engine::Engine(const IntegratorSettings& settings, std::unique_ptr<c
 
 void Integrator::Engine::apply(const FaultVerdict& verdict)
 {
-    const Opinion opinion = opinion_of(verdict);
+    Opinion opinion = opinion_of(verdict);
     if (opinion.state == VerdictState::unknown || (epoch_known_ && verdict.epoch < epoch_)) return;
+    confirm(opinion);
     exclusions_known_ = exclusions_known_ || opinion.excluded != 0;
     if (!epoch_known_ || verdict.epoch > epoch_) return trust_.hear_early(verdict.epoch, opinion);
 
@@ -56,6 +57,14 @@ void Integrator::Engine::apply(const FaultVerdict& verdict)
     if (!settings_.rollback) return;
     go_back_to(refresh(begin, end));
     if (!caught_up()) work();
+}
+
+// The lane's detector may have been away when the fault began, and unable to name it now: until it has had an exclusion of its own, its
+// verdicts do not clear the one that was taken over.
+void Integrator::Engine::confirm(Opinion& opinion)
+{
+    unconfirmed_ &= ~opinion.excluded;
+    opinion.take_over(taken_over_, unconfirmed_);
 }
 
 // @returns false where the record has this opinion, or a newer one, already.

@@ -21,6 +21,7 @@ public:
     void mark_published();
     std::uint64_t history_too_short() const { return history_too_short_; }
     void seed(const VotedAttitude& voted);
+    void let_go(AxisMask axes) { unconfirmed_ &= ~axes; }
     bool reset(const Quaternion& attitude, std::uint64_t sequence);
     void begin_epoch(std::uint64_t epoch, const Quaternion& attitude);
 
@@ -38,6 +39,8 @@ private:
     void connect_seed();
 
     // Trust.
+    void take_over(const VotedAttitude& voted);
+    void confirm(Opinion& opinion);
     bool hear(const Opinion& opinion, std::size_t index);
     std::size_t carry_opinion(std::size_t index);
     void refold();
@@ -93,6 +96,8 @@ private:
     bool seeded_ = false;
     bool seed_waits_ = false;
     VotedAttitude waiting_seed_;
+    Opinion taken_over_;        // the exclusions of the newest seed
+    AxisMask unconfirmed_ = 0;  // those that the lane's own detector has never had
     bool start_known_ = false;  // begin_epoch() was called for start_epoch_
     std::uint64_t start_epoch_ = 0;
     Quaternion start_attitude_ = Quaternion::Identity();

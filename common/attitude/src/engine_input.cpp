@@ -64,6 +64,7 @@ void Integrator::Engine::enter_epoch(std::uint64_t epoch)
     history_dropped_ = false;
     trust_.begin_epoch(epoch);
     trust_.fold(history_);
+    for (auto& from : taken_over_.excluded_from) from = from == never ? never : 0;
     if (first && !stated) return;
 
     Standing start = public_;
@@ -199,6 +200,20 @@ bool Integrator::Engine::reset(const Quaternion& attitude, std::uint64_t sequenc
     return true;
 }
 
+void Integrator::Engine::take_over(const VotedAttitude& voted)
+{
+    taken_over_ = opinion_of(voted);
+    unconfirmed_ = taken_over_.excluded;
+    exclusions_known_ = exclusions_known_ || unconfirmed_ != 0;
+    for (std::size_t i = 0; i < history_.size(); ++i)
+        if (history_[i].own_opinion) unconfirmed_ &= ~history_[i].opinion.excluded;
+    for (std::size_t i = 0; i < history_.size(); ++i)
+        if (history_[i].own_opinion) history_[i].opinion.take_over(taken_over_, unconfirmed_);
+    trust_.take_over(taken_over_, unconfirmed_);
+    trust_.hear_old(taken_over_);
+    carried_.known |= taken_over_.excluded;
+}
+
 void Integrator::Engine::begin_epoch(std::uint64_t epoch, const Quaternion& attitude)
 {
     start_known_ = true;
@@ -239,10 +254,7 @@ void Integrator::Engine::connect_seed()
         after = just_before ? 0 : at + 1;
     }
     close_history(after, standing_of(voted));
-    const Opinion taken_over = opinion_of(voted);
-    trust_.hear_old(taken_over);
-    carried_.known |= taken_over.excluded;
-    exclusions_known_ = exclusions_known_ || voted.isolated_mask != 0;
+    take_over(voted);
     public_ = history_.empty() ? anchor_ : history_.newest().standing;
     reset_counter_ = voted.reset_counter;
     reset_rotation_ = from_array(voted.reset_rotation);

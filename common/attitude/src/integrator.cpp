@@ -73,6 +73,10 @@ void Integrator::seed(const VotedAttitude& voted)
 {
     engine_->seed(voted);
 }
+void Integrator::let_go(AxisMask axes)
+{
+    engine_->let_go(axes);
+}
 bool Integrator::reset(const std::array<double, 4>& attitude, std::uint64_t sequence)
 {
     return engine_->reset(from_array(attitude).normalized(), sequence);

@@ -23,6 +23,14 @@ bool Opinion::precedes(const Opinion& other) const
     return key(*this) < key(other);
 }
 
+void Opinion::take_over(const Opinion& other, AxisMask axes)
+{
+    taken_over |= axes & ~excluded;
+    for (std::size_t axis = 0; axis < max_axes; ++axis)
+        if (has_axis(axes & ~excluded, axis)) excluded_from[axis] = other.excluded_from[axis];
+    excluded |= axes;
+}
+
 Opinion opinion_of(const FaultVerdict& verdict)
 {
     Opinion opinion;

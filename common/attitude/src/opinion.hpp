@@ -14,8 +14,9 @@ namespace quorient::attitude {
 struct Opinion {
     std::uint64_t sequence = 0;
     std::array<std::uint64_t, max_axes> excluded_from = detail::all_never();
-    AxisMask excluded = 0;  ///< axes with an excluded_from
-    AxisMask known = 0;     ///< excluded as far as verdicts up to this one say; more than `excluded` where it cannot clear
+    AxisMask excluded = 0;    ///< axes with an excluded_from
+    AxisMask taken_over = 0;  ///< those of them that not the verdict excludes, but the voters did (take_over)
+    AxisMask known = 0;       ///< excluded as far as verdicts up to this one say; more than `excluded` where it cannot clear
     AxisMask suspects = 0;
     AxisMask candidates = 0;  ///< union of the candidate sets
     double residual = 0;      ///< largest of the finite residuals [rad]
@@ -25,7 +26,14 @@ struct Opinion {
     bool clears() const { return state == VerdictState::healthy || state == VerdictState::suspect || state == VerdictState::isolated; }
 
     /// Sets `known`, given what was known at the frame before.
-    void follow(AxisMask known_before) { known = clears() ? excluded : excluded | known_before; }
+    void follow(AxisMask known_before)
+    {
+        const AxisMask own = excluded & ~taken_over;
+        known = clears() ? own : own | known_before;
+    }
+
+    /// Excludes these axes of another opinion besides its own.
+    void take_over(const Opinion& other, AxisMask axes);
 
     /// An order without meaning, so that of two different opinions on one frame the same one is kept whichever comes first.
     bool precedes(const Opinion& other) const;

@@ -126,6 +126,11 @@ void Trust::hear_old(const Opinion& opinion)
     old_.excluded |= before.excluded;
 }
 
+void Trust::take_over(const Opinion& other, AxisMask axes)
+{
+    for (std::size_t i = 0; i < early_count_; ++i) early_[i].take_over(other, axes);
+}
+
 void Trust::begin_epoch(std::uint64_t epoch)
 {
     epoch_ = epoch;

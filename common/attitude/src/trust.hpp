@@ -29,6 +29,9 @@ public:
     /// A verdict about a frame that has left the history, or that leaves it now; in any order, the newest counts.
     void hear_old(const Opinion& opinion);
 
+    /// The verdicts stored for frames still to come exclude these axes of another opinion besides their own.
+    void take_over(const Opinion& other, AxisMask axes);
+
     /// A new epoch begins: what is excluded stays so from its first frame on.
     void begin_epoch(std::uint64_t epoch);
 

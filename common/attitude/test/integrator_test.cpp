@@ -260,6 +260,64 @@ TEST_F(AnIntegrator, that_restarts_takes_over_the_voted_attitude_and_its_exclusi
     }
 }
 
+/// Takes over the exclusion of axis 2, which has been bad since frame 5, from the attitude voted at frame 110; its detector knows nothing
+/// of it.
+class ATakeOver : public AnIntegrator {
+protected:
+    ATakeOver()
+    {
+        instrument.set_fault(2, 5, [](double increment, double) { return increment * 1.5; });
+        for (int i = 0; i < 100; ++i) instrument.next();
+        for (int i = 0; i < 20; ++i) add(VerdictState::suspect);
+        fresh.seed(voted_at(instrument, 110));
+    }
+
+    void add(VerdictState state)
+    {
+        const SensorFrame frame = instrument.next();
+        fresh.add(frame);
+        fresh.apply(verdict_on(frame.sequence, state));
+    }
+
+    static IntegratorSettings waiting()
+    {
+        IntegratorSettings settings;
+        settings.initialised = false;
+        return settings;
+    }
+
+    Integrator fresh = Integrator::make(waiting(), cluster).value();
+};
+
+TEST_F(ATakeOver, is_not_undone_by_a_detector_that_was_away_at_the_onset)
+{
+    EXPECT_EQ(fresh.state().isolated_mask, axis_bit(2)) << "by verdicts that came before it";
+    for (const auto state : {VerdictState::suspect, VerdictState::ambiguous, VerdictState::healthy}) add(state);
+    fresh.apply(verdict_on(125, VerdictState::suspect));  // before its frame
+    for (int i = 0; i < 10; ++i) fresh.add(instrument.next());
+    EXPECT_EQ(fresh.state().isolated_mask, axis_bit(2));
+    EXPECT_EQ(fresh.state().used_mask, cluster.all() & ~axis_bit(2));
+    EXPECT_EQ(mode_of(fresh.state()), AttitudeMode::normal);
+    EXPECT_LT(angle_to(fresh.state(), instrument.attitude_after(132)), 1e-6);
+}
+
+TEST_F(ATakeOver, is_undone_by_a_detector_that_had_found_the_fault_itself)
+{
+    fresh.apply(isolating(119, 2, 5));
+    add(VerdictState::suspect);
+    EXPECT_EQ(fresh.state().isolated_mask, 0u);
+}
+
+TEST_F(ATakeOver, is_undone_by_its_detector_once_the_voters_have_let_it_go)
+{
+    fresh.let_go(axis_bit(1));
+    add(VerdictState::healthy);
+    EXPECT_EQ(fresh.state().isolated_mask, axis_bit(2));
+    fresh.let_go(axis_bit(2));
+    add(VerdictState::healthy);
+    EXPECT_EQ(fresh.state().isolated_mask, 0u);
+}
+
 TEST_F(AnIntegrator, whose_seed_does_not_connect_waits_for_another)
 {
     IntegratorSettings settings;

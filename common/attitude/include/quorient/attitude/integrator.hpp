@@ -73,6 +73,10 @@ public:
     /// first frame after that identity has been integrated. Flag SEEDED from then on, until reset().
     void seed(const VotedAttitude& voted);
 
+    /// Of the exclusions taken over by seed(), these may be cleared by a verdict that does not share them. Without it only a
+    /// detector that has once excluded the axis itself clears it: one that was away at the onset may be unable to name it.
+    void let_go(AxisMask axes);
+
     /// By command: the attitude at the end of this sequence is this; the frames after it are integrated again from there, so that
     /// lanes that hear it at different frames agree. Announced as a reset; history before it is closed.
     /// @returns false where the history does not reach that frame, or it has not come yet: nothing is changed.
