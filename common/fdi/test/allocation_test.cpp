@@ -1,50 +1,10 @@
-// No method may touch the heap per frame: every operator new of this program is counted.
+// No method may touch the heap per frame: every allocation of this program is counted.
 
+#include "allocation_count.hpp"
 #include "quorient/fdi/make_detector.hpp"
 #include "test_clusters.hpp"
 
 #include <gtest/gtest.h>
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
-namespace {
-
-std::atomic<std::size_t> allocations{0};
-
-void* counted(std::size_t size, std::size_t alignment)
-{
-    ++allocations;
-    if (void* memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)) return memory;
-    throw std::bad_alloc();
-}
-
-}  // namespace
-
-void* operator new(std::size_t size)
-{
-    return counted(size, alignof(std::max_align_t));
-}
-void* operator new(std::size_t size, std::align_val_t alignment)
-{
-    return counted(size, static_cast<std::size_t>(alignment));
-}
-void operator delete(void* memory) noexcept
-{
-    std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept
-{
-    std::free(memory);
-}
-void operator delete(void* memory, std::align_val_t) noexcept
-{
-    std::free(memory);
-}
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept
-{
-    std::free(memory);
-}
 
 namespace quorient::fdi {
 namespace {
@@ -61,7 +21,7 @@ std::size_t allocations_while_assessing(Detector& detector, const geometry::Sens
                                             measure(cluster, {1, 2, 3}, {{0, 70}, {2, -300}})};
     Assessment assessment;
     std::uint64_t sequence = 0;
-    const std::size_t before = allocations;
+    const std::size_t before = quorient::test::allocation_count();
     for (int repetition = 0; repetition < 20; ++repetition)
         for (const auto& z : frames)
             for (const AxisMask valid : {cluster.all(), cluster.all() & ~axis_bit(3), cluster.all()})
@@ -69,15 +29,15 @@ std::size_t allocations_while_assessing(Detector& detector, const geometry::Sens
     detector.exclude(axis_bit(1));
     detector.assess({.identity = {1, sequence++}, .interval_s = 0.01, .increment = frames[1], .valid = cluster.all()}, assessment);
     detector.exclude(0);
-    return allocations - before;
+    return quorient::test::allocation_count() - before;
 }
 
 TEST(Allocation, is_counted_at_all)
 {
-    const std::size_t before = allocations;
+    const std::size_t before = quorient::test::allocation_count();
     delete new double(1);
     const geometry::Axes on_the_stack = cluster_named("cone-4").axes;
-    EXPECT_GT(allocations, before);
+    EXPECT_GT(quorient::test::allocation_count(), before);
     EXPECT_EQ(on_the_stack.rows(), 4);
 }
 

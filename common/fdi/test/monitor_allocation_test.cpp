@@ -1,6 +1,6 @@
 // Nothing is allocated per frame, whatever the method and whatever happens. (Linked with --wrap=malloc.)
 
-#include "../../geometry/test/allocation_count.hpp"
+#include "allocation_count.hpp"
 #include "observer_scene.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
 #include "quorient/fdi/make_detector.hpp"

@@ -1,17 +1,14 @@
+#include "allocation_count.hpp"
 #include "scene.hpp"
 
 #include <gtest/gtest.h>
-#include <cstdlib>
 #include <limits>
-#include <new>
 
 using namespace quorient;
 using namespace quorient::voting;
 using namespace quorient::voting::test;
 
 namespace {
-
-std::size_t allocations = 0;
 
 auto all_but(std::size_t absent)
 {
@@ -35,22 +32,6 @@ void expect_every_frame_once(const Scene& scene, std::uint64_t first, std::uint6
 }
 
 }  // namespace
-
-// Not inlined: a compiler that sees through them takes malloc and delete for a mismatch.
-[[gnu::noinline]] void* operator new(std::size_t size)
-{
-    ++allocations;
-    if (void* memory = std::malloc(size)) return memory;
-    throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept
-{
-    std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept
-{
-    std::free(memory);
-}
 
 TEST(Voter, publishes_the_primarys_attitude_and_never_an_average)
 {
@@ -582,7 +563,7 @@ TEST(Voter, allocates_nothing_after_its_construction)
     Output output;
     VoterEvent event;
     voter.poll(now);
-    const std::size_t before = allocations;
+    const std::size_t before = quorient::test::allocation_count();
     for (std::uint64_t sequence = 0; sequence < 1000; ++sequence) {
         now = Scene::time_of(sequence);
         voter.poll(now);
@@ -594,7 +575,7 @@ TEST(Voter, allocates_nothing_after_its_construction)
         while (voter.next_output(output)) continue;
         while (voter.next_event(event)) continue;
     }
-    EXPECT_EQ(allocations, before);
+    EXPECT_EQ(quorient::test::allocation_count(), before);
     EXPECT_GT(voter.counters().published, 990U);
 }
 
