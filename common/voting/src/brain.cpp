@@ -16,9 +16,6 @@ constexpr std::int64_t least_grace_ns = 100'000'000;
 /// A primary that the stronger voter names in so many frames running is its choice; in fewer it may be a stand-in for a late one.
 constexpr std::uint64_t choice_frames = 5;
 
-/// A voter that has seen one of the first frames of an epoch was there before any other had published much.
-constexpr std::uint64_t first_frames = 20;
-
 }  // namespace
 
 Voter::Brain::Brain(const VoterSettings& settings)
@@ -27,7 +24,6 @@ Voter::Brain::Brain(const VoterSettings& settings)
       patience_ns_(nanoseconds(settings.interval_s * settings.patience)),
       silence_ns_(nanoseconds(settings.interval_s * settings.silence_intervals)),
       lease_ns_(nanoseconds(settings.lease_s)),
-      listen_ns_(nanoseconds(settings.listen_s)),
       coasting_interval_ns_(nanoseconds(settings.coasting_interval_s)),
       coasting_to_lost_ns_(nanoseconds(settings.coasting_to_lost_s)),
       majority_(settings.lanes.size() / 2 + 1),
@@ -37,7 +33,8 @@ Voter::Brain::Brain(const VoterSettings& settings)
       corroboration_(settings.lanes.size(), majority_, settings.settle_frames, settings.return_frames, silence_ns_),
       board_(settings, majority_, corroboration_, narrator_),
       ranking_(settings),
-      owned_(interval_ns_)
+      owned_(interval_ns_),
+      joining_(settings, ranking_.has_others())
 {
     promised_ns_ = std::numeric_limits<std::int64_t>::min();
 }
@@ -82,66 +79,37 @@ void Voter::Brain::poll(std::int64_t now_ns)
 
 bool Voter::Brain::may_own() const
 {
-    if (!ranking_.established() || synchronised_ns_) return false;
+    if (!ranking_.established() || joining_.listens()) return false;
     const bool repeats = coasted_ns_ > last_frame_ns_;
     return !repeats || !ranking_.is_behind(identity_of(last_), *now_);
 }
 
-/// Time goes on. A voter that was away longer than its lease is no longer believed by anyone and starts over; after a shorter delay
-/// it first lets its queues be emptied before it blames a lane for what lay in them.
+/// Time goes on.
 void Voter::Brain::notice(std::int64_t now_ns)
 {
     if (!now_) {
         now_ = now_ns;
-        if (ranking_.has_others()) synchronised_ns_ = now_ns + lease_ns_;
-        return;
+        return joining_.begin(now_ns);
     }
     const std::int64_t before = *now_;
     now_ = std::max(before, now_ns);
     const std::int64_t away_ns = *now_ - before;
-    if (away_ns > lease_ns_) {
-        start_over(away_ns);
-    } else if (*now_ > promised_ns_ + interval_ns_ / 2) {
-        drained_ns_ = *now_ + interval_ns_ / 2;
-        if (away_ns <= lease_ns_ / 2 || !ranking_.has_others()) return;
-        synchronised_ns_ = std::max(synchronised_ns_.value_or(0), drained_ns_);  // another voter may just have taken over
-    }
+    if (away_ns > lease_ns_) start_over(away_ns);
+    else if (*now_ > promised_ns_ + interval_ns_ / 2) joining_.was_delayed(*now_, away_ns);
 }
 
-void Voter::Brain::start_over(std::int64_t delay_ns)
+void Voter::Brain::start_over(std::int64_t away_ns)
 {
     ++counters_.resynchronised;
-    narrator_.away(timeline_.newest(), seconds(delay_ns));
+    narrator_.away(timeline_.newest(), seconds(away_ns));
     timeline_.forget_frames();
     ranking_.start_over();
-    drained_ns_ = *now_ + interval_ns_ / 2;
-    discard_ = true;
-    synchronised_ns_ = ranking_.has_others() ? *now_ + lease_ns_ : drained_ns_;
+    joining_.start_over(*now_);
 }
 
-/// In the middle of a stream there is another voter to be expected, whose numbers and primary are to be taken over.
-bool Voter::Brain::knows_where_to_begin()
+void Voter::Brain::finish_joining()
 {
-    if (!joins_ || !ranking_.has_others()) return true;
-    if (!frames_since_ns_ && timeline_.started()) {
-        frames_since_ns_ = *now_;
-        from_the_beginning_ = timeline_.newest().sequence < first_frames;
-    }
-    if (from_the_beginning_) return true;
-    if (ranking_.has_heard()) {
-        if (!heard_since_ns_) heard_since_ns_ = *now_;
-        return *now_ >= *heard_since_ns_ + lease_ns_;  // what it hears first is the other's history
-    }
-    discard_ = frames_since_ns_ && *now_ >= *frames_since_ns_ + listen_ns_;
-    return discard_;
-}
-
-void Voter::Brain::finish_synchronising()
-{
-    synchronised_ns_.reset();
-    joins_ = false;
-    if (discard_) timeline_.pass(timeline_.newest());
-    discard_ = false;
+    if (joining_.finish()) timeline_.pass(timeline_.newest());
     if (const VotedAttitude* other = ranking_.farthest(*now_)) adopt(*other);
 }
 
@@ -209,12 +177,12 @@ void Voter::Brain::consider_newcomers()
 void Voter::Brain::go_on()
 {
     consider_newcomers();
-    if (synchronised_ns_ && *now_ >= *synchronised_ns_ && knows_where_to_begin()) finish_synchronising();
-    if (*now_ >= drained_ns_) {
+    if (joining_.is_over(*now_, timeline_, ranking_)) finish_joining();
+    if (*now_ >= joining_.drained_ns()) {
         board_.mark_silent(timeline_, silence_ns_, *now_);
         board_.release_last_resort(timeline_);
     }
-    if (!synchronised_ns_) {
+    if (!joining_.listens()) {
         publish_what_is_ready(false);
         coast_if_due();
     }
@@ -228,7 +196,7 @@ void Voter::Brain::go_on()
 /// In order: a frame goes out before any later one. Frames of which only excluded lanes spoke are passed over with the next one.
 void Voter::Brain::publish_what_is_ready(bool at_once)
 {
-    if (synchronised_ns_) return;
+    if (joining_.listens()) return;
     auto sequence = timeline_.next_open(timeline_.next());
     while (sequence) {
         const Ballot ballot = count(paper_of(*sequence), board_.agreement());
@@ -295,7 +263,7 @@ bool Voter::Brain::is_ready(std::uint64_t sequence, const Ballot& ballot) const
     const bool as_wanted = ballot.backed && *ballot.primary == wanted_primary();
     if (as_wanted && !is_better_to_come(timeline_.identity(sequence), ballot.isolated)) return true;
     if (is_complete(timeline_.identity(sequence), ballot.several_groups)) return true;
-    return *now_ >= std::max(timeline_.due_ns(sequence) + patience_ns_, drained_ns_);
+    return *now_ >= std::max(timeline_.due_ns(sequence) + patience_ns_, joining_.drained_ns());
 }
 
 /// A lane that has not spoken of this frame yet has corrected its attitude for a fault that a majority of detectors reports.
@@ -460,14 +428,11 @@ void Voter::Brain::plan()
     const auto consider = [&](std::int64_t time_ns) {
         if (time_ns > *now_) earliest = std::min(earliest, time_ns);
     };
-    consider(drained_ns_);
+    joining_.tell_deadlines(consider);
     consider(owned_.deadline_ns());
     consider(newcomers_.deadline_ns());
     consider(ranking_.leader_ends_ns(*now_));
     consider(board_.silence_deadline_ns(timeline_, silence_ns_));
-    if (synchronised_ns_) consider(*synchronised_ns_);
-    if (synchronised_ns_ && frames_since_ns_) consider(*frames_since_ns_ + listen_ns_);
-    if (synchronised_ns_ && heard_since_ns_) consider(*heard_since_ns_ + lease_ns_);
     for (auto waiting = timeline_.next_open(timeline_.next()); waiting; waiting = timeline_.next_open(*waiting + 1)) {
         consider(timeline_.due_ns(*waiting) + patience_ns_);
     }

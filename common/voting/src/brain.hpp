@@ -1,5 +1,6 @@
 #pragma once
 
+#include "joining.hpp"
 #include "lane_board.hpp"
 #include "narrator.hpp"
 #include "quorient/voting/bounded_queue.hpp"
@@ -38,9 +39,8 @@ public:
 
 private:
     void notice(std::int64_t now_ns);
-    void start_over(std::int64_t delay_ns);
-    bool knows_where_to_begin();
-    void finish_synchronising();
+    void start_over(std::int64_t away_ns);
+    void finish_joining();
     void adopt(const VotedAttitude& output);
 
     std::optional<LaneIndex> lane_of(std::uint32_t unit, std::uint32_t id, std::uint32_t LaneSettings::*member) const;
@@ -72,7 +72,6 @@ private:
     std::int64_t patience_ns_;
     std::int64_t silence_ns_;
     std::int64_t lease_ns_;
-    std::int64_t listen_ns_;
     std::int64_t coasting_interval_ns_;
     std::int64_t coasting_to_lost_ns_;
     std::size_t majority_;
@@ -85,18 +84,12 @@ private:
     Continuity continuity_;
     VoterRanking ranking_;
     OwnedStream owned_;
+    Joining joining_;
     BoundedQueue<Output, 128> outputs_;
     VoterCounters counters_;
 
     std::optional<std::int64_t> now_;
-    std::int64_t promised_ns_ = 0;                 ///< when poll was asked for
-    std::int64_t drained_ns_ = 0;                  ///< after a short delay of our own, what waited in the queues has been handed in by then
-    std::optional<std::int64_t> synchronised_ns_;  ///< until then nothing is published
-    bool joins_ = true;                            ///< has not published since it started
-    std::optional<std::int64_t> frames_since_ns_;  ///< when the first frame came
-    std::optional<std::int64_t> heard_since_ns_;   ///< when another voter was heard first
-    bool from_the_beginning_ = false;              ///< and that was among the first of its epoch
-    bool discard_ = false;                         ///< what is pending when synchronised is too old to publish
+    std::int64_t promised_ns_ = 0;  ///< when poll was asked for
 
     LaneIndex primary_ = 0;
     std::array<std::uint64_t, 8> change_{};  ///< outputs at which the primary changed
