@@ -1,15 +1,19 @@
 #!/usr/bin/env python3
 """What a foreign publisher does wrong is named in events by detectors and integrators, and ends none of them."""
 import json
+import pathlib
+import re
 import signal
 import unittest
 
 from foreign import HERE, InteropTest, build
 from harness import CONFIGURATIONS
 
-REJECTED_INPUT, UNKNOWN_REVISION = 42, 54
+REJECTED_INPUT, NO_MATCH, UNKNOWN_REVISION = 42, 44, 54
 DETECTORS = {f"fdi-{lane}" for lane in "abc"}
 INTEGRATORS = {f"attitude-{lane}" for lane in "abc"}
+LARGEST_RESIDENT_MB = 48
+LARGEST_GROWTH_MB = 8  # in two rounds of 10 000 units after the first; 2.5 measured, and 10 MB in the first
 LANES = DETECTORS | INTEGRATORS
 
 # What wrong_publisher can do: the event's code, words of its text, who must say them.
@@ -74,16 +78,49 @@ class ForeignPublisher(InteropTest):
         newest = max((event["epoch"] for event in self.told()), default=0)
         publisher = self.publish("none")
         try:
-            self.eventually(lambda: self.follows_an_epoch_after(newest), "its frames are voted on")
+            self.eventually(lambda: self.follows(newest, 100), "its frames are voted on")
         finally:
             self.stop(publisher)
         self.assertEqual(self.refused(since), [])
+        self.assertEqual(self.unmatched(), set())
         self.all_alive(self.services)
 
-    def follows_an_epoch_after(self, newest):
+    def follows(self, epoch, sequence):
+        """Whether a frame after that sequence, of a later epoch, has been voted on."""
         # The history comes first; behind it the present.
         present = self.echo("voter_output", 200)[-1:]
-        return any(voted["sequence_number"] > 100 and voted["epoch"] > newest for voted in present)
+        return any(voted["sequence_number"] > sequence and voted["epoch"] > epoch for voted in present)
+
+    def unmatched(self):
+        return {event["source_name"] for event in self.told() if event["code"] == NO_MATCH and "frame matched nobody for 5 s" in event["text"]}
+
+    def memory_mb(self):
+        """Resident, of every service."""
+        def resident(process):
+            status = pathlib.Path(f"/proc/{process.pid}/status").read_text()
+            return int(re.search(r"VmRSS:\s+(\d+)", status)[1]) / 1024
+
+        return {name: resident(process) for name, (process, _) in self.services.items()}
+
+    def test_frames_of_another_type_are_told_from_silence(self):
+        """DDS matches by type: whoever publishes `frame` by another IDL is not heard at all, and that is said."""
+        publisher = self.publish("type")
+        self.eventually(lambda: LANES <= self.unmatched(), "every lane says that it matched nobody", timeout=12)
+        self.stop(publisher)
+        self.all_alive(self.services)
+
+    def test_ten_thousand_units_of_others_cost_little(self):
+        memory = []
+        for _ in range(3):
+            publisher = self.publish("units")
+            before = max((event["epoch"] for event in self.told()), default=0)
+            self.eventually(lambda: self.follows(before, 700), "the unit is voted on while 10 000 others are published")
+            memory.append(self.memory_mb())
+            self.stop(publisher)
+        self.all_alive(self.services)
+        for name, resident in memory[-1].items():
+            self.assertLess(resident, LARGEST_RESIDENT_MB, f"{name}: {memory}")
+            self.assertLess(resident, memory[0][name] + LARGEST_GROWTH_MB, f"{name} grows with every 10 000 units: {memory}")
 
     def test_every_mistake_is_named_and_nobody_ends(self):
         # The first of them meets services that never had a description.

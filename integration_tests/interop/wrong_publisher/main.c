@@ -10,7 +10,7 @@
 
 #include "quorient_msgs.h"
 
-enum { GYRO = 1, STATED = 1, AXES = 4, GOOD_FRAMES = 60 };
+enum { GYRO = 1, STATED = 1, AXES = 4, GOOD_FRAMES = 60, FOREIGN_UNITS = 10000, UNITS_PER_FRAME = 20 };
 #define INTERVAL_NS 5000000
 
 static volatile sig_atomic_t stop = 0;
@@ -61,6 +61,18 @@ static quorient_msgs_ClusterDescription describe(uint64_t epoch)
     return d;
 }
 
+/* Descriptions and frames of the next of FOREIGN_UNITS other units, each an instance of its own. */
+static void publish_foreign_units(dds_entity_t descriptions, dds_entity_t frames, quorient_msgs_ClusterDescription description,
+                                  quorient_msgs_SensorFrame frame)
+{
+    static uint32_t published = 0;
+    for (int i = 0; i < UNITS_PER_FRAME && published < FOREIGN_UNITS; ++i) {
+        description.unit = frame.unit = 2 + published++;
+        made(dds_write(descriptions, &description), "description");
+        made(dds_write(frames, &frame), "frame");
+    }
+}
+
 int main(int argc, char** argv)
 {
     if (argc != 3) return fprintf(stderr, "usage: wrong_publisher DOMAIN MISTAKE\n"), 2;
@@ -76,6 +88,11 @@ int main(int argc, char** argv)
          "domain");
     const dds_entity_t participant = made(dds_create_participant(domain, NULL, NULL), "participant");
     const dds_entity_t descriptions = writer_of(participant, &quorient_msgs_ClusterDescription_desc, "quorient/cluster", 1);
+    if (MISTAKE("type")) {
+        writer_of(participant, &quorient_msgs_ServiceStatus_desc, "quorient/frame", 0);
+        while (!stop) dds_sleepfor(DDS_MSECS(5));
+        return 0;
+    }
     const dds_entity_t frames = writer_of(participant, &quorient_msgs_SensorFrame_desc, "quorient/frame", 0);
 
     struct timespec now;
@@ -113,6 +130,7 @@ int main(int argc, char** argv)
             if (MISTAKE("time")) frame.sample_time_ns = GOOD_FRAMES * (int64_t)INTERVAL_NS;
             if (MISTAKE("value")) frame.increment[2] = nan("");
             if (MISTAKE("sequence-edge")) frame.sequence_number = UINT64_MAX - (count == GOOD_FRAMES);
+            if (MISTAKE("units")) publish_foreign_units(descriptions, frames, description, frame);
             if (MISTAKE("other-axes") && count == GOOD_FRAMES) {
                 description.epoch = frame.epoch = epoch + 1;
                 description.axis_count = frame.axis_count = 3;
