@@ -10,9 +10,58 @@ constexpr std::size_t header_size = 20;
 constexpr std::size_t submessage_header_size = 4;
 constexpr std::uint8_t little_endian_flag = 0x01;
 constexpr std::uint8_t pad = 0x01;
+constexpr std::uint8_t gap = 0x08;
 constexpr std::uint8_t info_timestamp = 0x09;
+constexpr std::uint8_t data_fragment = 0x16;
 constexpr std::uint8_t statistics = 0x80;
 constexpr std::size_t statistics_size = 56;
+
+/// A gap is walked number by number, and numbers that are not the next expected are kept one by one. Writers here keep far fewer samples.
+constexpr std::int64_t longest_gap = 65'536;
+
+/// Memory for the whole sample is taken on its first fragment. Samples here are far smaller.
+constexpr std::uint32_t largest_sample = 1'048'576;
+
+/// The content of one submessage, behind its header.
+class Submessage {
+public:
+    Submessage(const std::uint8_t* content, std::size_t size, bool little) : content_(content), size_(size), little_(little) {}
+
+    std::size_t size() const { return size_; }
+
+    std::uint32_t word(std::size_t place) const
+    {
+        std::uint32_t value = 0;
+        for (std::size_t i = 0; i < 4; ++i) value = value << 8U | content_[place + (little_ ? 3 - i : i)];
+        return value;
+    }
+
+    /// [RTPS 9.3.2.3]: the high word comes first in either byte order.
+    std::int64_t sequence_number(std::size_t place) const
+    {
+        return static_cast<std::int64_t>(static_cast<std::uint64_t>(word(place)) << 32U | word(place + 4));
+    }
+
+private:
+    const std::uint8_t* content_;
+    std::size_t size_;
+    bool little_;
+};
+
+/// [RTPS 9.4.5.6]: reader, writer, first number, and behind the gap the base of a set.
+bool is_sound_gap(const Submessage& content)
+{
+    if (content.size() < 28) return false;
+    const std::int64_t first = content.sequence_number(8);
+    const std::int64_t end = content.sequence_number(16);
+    return first > 0 && end >= first && end - first <= longest_gap;
+}
+
+/// [RTPS 9.4.5.5]: flags, reader, writer, number, and which fragments of what size of a sample of what size.
+bool is_sound_fragment(const Submessage& content)
+{
+    return content.size() >= 32 && content.word(28) <= largest_sample;
+}
 
 }  // namespace
 
@@ -24,12 +73,15 @@ bool is_sound_rtps(const std::uint8_t* data, std::size_t size)
         const auto id = data[place];
         const bool little = (data[place + 1] & little_endian_flag) != 0;
         const std::size_t first = data[place + 2], second = data[place + 3];
-        const std::size_t length = little ? first | second << 8U : first << 8U | second;
+        std::size_t length = little ? first | second << 8U : first << 8U | second;
         const std::size_t left = size - place - submessage_header_size;
         if (length > left) return false;
         if (id == statistics) return length == statistics_size && length == left;
         // Of the others, a length of 0 reaches to the datagram's end.
-        if (length == 0 && id != pad && id != info_timestamp) return true;
+        if (length == 0 && id != pad && id != info_timestamp) length = left;
+        const Submessage content(data + place + submessage_header_size, length, little);
+        if (id == gap && !is_sound_gap(content)) return false;
+        if (id == data_fragment && !is_sound_fragment(content)) return false;
         place += submessage_header_size + length;
     }
     return true;

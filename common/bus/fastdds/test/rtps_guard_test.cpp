@@ -45,6 +45,35 @@ Datagram with_statistics(std::uint8_t length)
     return datagram;
 }
 
+/// Of one submessage, in either byte order: words in the sender's order.
+Datagram with_words(std::uint8_t id, bool little, const std::vector<std::uint32_t>& words)
+{
+    Datagram datagram{'R', 'T', 'P', 'S', 2, 3, 1, 15};
+    datagram.resize(20);
+    const auto append = [&](std::uint32_t value, std::size_t bytes) {
+        for (std::size_t i = 0; i < bytes; ++i)
+            datagram.push_back(static_cast<std::uint8_t>(value >> 8U * static_cast<unsigned>(little ? i : bytes - 1 - i)));
+    };
+    append(id, 1);
+    append(little ? 1 : 0, 1);
+    append(static_cast<std::uint32_t>(4 * words.size()), 2);
+    for (const auto word : words) append(word, 4);
+    return datagram;
+}
+
+/// From the first number to before the end.
+Datagram with_gap(std::uint64_t first, std::uint64_t end, bool little)
+{
+    const auto high = [](std::uint64_t number) { return static_cast<std::uint32_t>(number >> 32U); };
+    const auto low = [](std::uint64_t number) { return static_cast<std::uint32_t>(number); };
+    return with_words(0x08, little, {0x0102, 0x0103, high(first), low(first), high(end), low(end), 0});
+}
+
+Datagram with_fragment(std::uint32_t sample_size, bool little)
+{
+    return with_words(0x16, little, {0x1c, 0x0102, 0x0103, 0, 1, 1, 0x00010400, sample_size, 0});
+}
+
 TEST(RtpsGuard, lets_in_everything_that_either_vendor_sends)
 {
     const auto datagrams = recorded();
@@ -69,6 +98,27 @@ TEST(RtpsGuard, refuses_what_is_cut_and_reads_nothing_behind_the_end)
     for (std::size_t size = 0; size < whole.size(); ++size) {
         const Datagram cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));  // a copy: sanitizers see its end
         EXPECT_EQ(sound(cut), size == 20) << size;
+    }
+}
+
+TEST(RtpsGuard, refuses_gaps_that_would_be_walked_for_ever)
+{
+    for (const bool little : {true, false}) {
+        EXPECT_TRUE(sound(with_gap(1, 1, little)));
+        EXPECT_TRUE(sound(with_gap(0x1'0000'0000, 0x1'0001'0000, little)));
+        EXPECT_FALSE(sound(with_gap(0x1'0000'0000, 0x1'0001'0001, little)));
+        EXPECT_FALSE(sound(with_gap(1, 0x8000'0000, little)));
+        EXPECT_FALSE(sound(with_gap(5, 4, little)));
+        EXPECT_FALSE(sound(with_gap(0, 1, little)));
+    }
+}
+
+TEST(RtpsGuard, refuses_fragments_of_samples_that_are_too_large)
+{
+    for (const bool little : {true, false}) {
+        EXPECT_TRUE(sound(with_fragment(1'048'576, little)));
+        EXPECT_FALSE(sound(with_fragment(1'048'577, little)));
+        EXPECT_FALSE(sound(with_fragment(0xFFFF'FFFF, little)));
     }
 }
 
