@@ -94,7 +94,6 @@ void Integrator::Engine::append_gap(const SensorFrame& frame, std::uint64_t lost
     record.first_sequence = next_sequence_;
     record.last_sequence = frame.sequence - 1;
     record.interval_s = static_cast<double>(lost) * frame.interval_s;
-    record.sample_time_ns = frame.sample_time_ns - static_cast<std::int64_t>(std::llround(frame.interval_s * 1e9));
     record.bridge = true;
     for (std::size_t axis = 0; axis < axis_count_; ++axis) {
         const bool own = has_axis(frame.valid_mask, axis);
@@ -111,7 +110,6 @@ void Integrator::Engine::append_frame(const SensorFrame& frame)
     Record& record = append_record();
     record.first_sequence = record.last_sequence = frame.sequence;
     record.interval_s = frame.interval_s;
-    record.sample_time_ns = frame.sample_time_ns;
     for (std::size_t axis = 0; axis < axis_count_; ++axis) {
         if (!has_axis(frame.valid_mask, axis) || !usable(frame.increment[axis])) continue;
         record.increment[axis] = frame.increment[axis];

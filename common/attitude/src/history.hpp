@@ -27,7 +27,6 @@ struct Record {
     // What the wire said.
     std::uint64_t first_sequence = 0;
     std::uint64_t last_sequence = 0;
-    std::int64_t sample_time_ns = 0;
     double interval_s = 0;
     std::array<double, max_axes> increment{};  ///< raw, per axis; 0 where not valid
     AxisMask valid = 0;

@@ -1,5 +1,7 @@
 #include "quorient/runtime/frame_intake.hpp"
 
+#include "quorient/messages/sample_time.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -16,6 +18,14 @@ constexpr double range_tolerance = 1.0 + 1e-9;
 /// A description may come a little after its first frames; one that stays away so long is missing.
 constexpr std::int64_t description_patience_ns = 500'000'000;
 
+/// Longer than any sensor waits; in nanoseconds it is still far from the end of the integers.
+constexpr double longest_interval_s = 3600;
+
+bool is_interval(double interval_s)
+{
+    return interval_s > 0 && interval_s <= longest_interval_s;
+}
+
 /// One frame that is not newer is the network's doing; so many without a newer one in between are a publisher that counts again.
 constexpr std::uint32_t restart_after = 5;
 
@@ -27,7 +37,7 @@ const char* FrameIntake::problem_of(const ClusterDescription& description)
     const bool channels = description.kind == static_cast<std::uint8_t>(SensorKind::vessel_rates);
     if (description.axis_count < (channels ? 1 : 3) || description.axis_count > max_axes)
         return channels ? "it must have 1 to 24 channels" : "it must have 3 to 24 axes";
-    if (!(description.interval_s > 0) || !std::isfinite(description.interval_s)) return "its interval must be above 0 s";
+    if (!is_interval(description.interval_s)) return "its interval must be above 0 s and at most an hour";
     return nullptr;
 }
 
@@ -109,7 +119,7 @@ bool FrameIntake::order(const SensorFrame& frame, std::int64_t now_ns)
     older_in_a_row_ = 0;
     newest_ = identity;
     last_arrival_ns_ = now_ns;
-    if (std::isfinite(frame.interval_s)) interval_s_ = frame.interval_s;
+    if (is_interval(frame.interval_s)) interval_s_ = frame.interval_s;
     return true;
 }
 
@@ -151,7 +161,8 @@ bool FrameIntake::clean(SensorFrame& frame, const ClusterDescription& descriptio
     Complaint wrong{.identity = identity_of(frame)};
     if (frame.axis_count != description.axis_count)
         wrong = {.fault = Fault::axis_count, .identity = wrong.identity, .got = frame.axis_count, .expected = description.axis_count};
-    else if (!(frame.interval_s > 0) || !std::isfinite(frame.interval_s)) wrong.fault = Fault::interval;
+    else if (!is_interval(frame.interval_s)) wrong.fault = Fault::interval;
+    else if (!is_sample_time(frame.sample_time_ns)) wrong.fault = Fault::sample_time;
     else if (!accepted_.new_epoch && frame.sample_time_ns <= last_sample_time_ns_) wrong.fault = Fault::sample_time;
     if (wrong.fault != Fault::none) {
         complain(wrong);

@@ -181,7 +181,14 @@ TEST_F(Intake, refuses_frames_with_a_wrong_axis_count_interval_or_time)
     bad = frame(1, 4);
     bad.sample_time_ns = frame(1, 3).sample_time_ns;
     EXPECT_FALSE(passes(bad));
-    EXPECT_EQ(intake.counters().rejected_frames, 4U);
+    bad = frame(1, 5);
+    bad.sample_time_ns = std::numeric_limits<std::int64_t>::max();
+    EXPECT_FALSE(passes(bad));
+    bad = frame(1, 6);
+    bad.interval_s = 1e300;
+    EXPECT_FALSE(passes(bad));
+    EXPECT_TRUE(passes(frame(1, 7)));
+    EXPECT_EQ(intake.counters().rejected_frames, 6U);
 }
 
 TEST_F(Intake, does_not_take_a_foreign_description_for_its_own)

@@ -1,5 +1,7 @@
 #include "quorient/voting/agreement.hpp"
 
+#include "quorient/messages/sample_time.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -48,7 +50,7 @@ bool is_attitude(const Quaternion& q)
 bool is_sound(const AttitudeState& sample)
 {
     return is_attitude(sample.attitude) && is_attitude(sample.reset_rotation) && finite(sample.rate_rad_s) &&
-           std::isfinite(sample.angle_sigma_rad) && sample.angle_sigma_rad >= 0;
+           std::isfinite(sample.angle_sigma_rad) && sample.angle_sigma_rad >= 0 && is_sample_time(sample.sample_time_ns);
 }
 
 bool Agreement::agree(std::size_t a, const AttitudeState& of_a, std::size_t b, const AttitudeState& of_b, double sigma_limit) const
