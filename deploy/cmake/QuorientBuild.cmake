@@ -23,7 +23,8 @@ target_compile_options(quorient_warnings INTERFACE -Wall -Wextra -Wpedantic -Wco
 
 if(QUORIENT_SANITIZE)
   # Under -fsanitize g++ 12 sees uninitialised members of std::optional and std::regex where there are none (GCC bug 105562).
-  add_compile_options(-fsanitize=${QUORIENT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -Wno-maybe-uninitialized)
+  add_compile_options(-fsanitize=${QUORIENT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   add_link_options(-fsanitize=${QUORIENT_SANITIZE})
 endif()
 if(QUORIENT_COVERAGE)

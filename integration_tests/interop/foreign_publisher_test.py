@@ -9,7 +9,7 @@ import unittest
 from foreign import HERE, InteropTest, build
 from harness import CONFIGURATIONS
 
-REJECTED_INPUT, NO_MATCH, UNKNOWN_REVISION = 42, 44, 54
+REJECTED_INPUT, NO_MATCH, INCOMPATIBLE_QOS, UNKNOWN_REVISION = 42, 44, 45, 54
 DETECTORS = {f"fdi-{lane}" for lane in "abc"}
 INTEGRATORS = {f"attitude-{lane}" for lane in "abc"}
 LARGEST_RESIDENT_MB = 48
@@ -56,7 +56,7 @@ class ForeignPublisher(InteropTest):
         return [json.loads(line) for line in self.events.read_text().split("\n")[:-1]]
 
     def refused(self, since=0):
-        return [event for event in self.told()[since:] if event["code"] in (REJECTED_INPUT, UNKNOWN_REVISION)]
+        return [e for e in self.told()[since:] if e["code"] in (REJECTED_INPUT, UNKNOWN_REVISION) and e["source_name"] in LANES]
 
     def is_named(self, mistake):
         code, words, by = MISTAKES[mistake]
@@ -106,6 +106,16 @@ class ForeignPublisher(InteropTest):
         """DDS matches by type: whoever publishes `frame` by another IDL is not heard at all, and that is said."""
         publisher = self.publish("type")
         self.eventually(lambda: LANES <= self.unmatched(), "every lane says that it matched nobody", timeout=12)
+        self.stop(publisher)
+        self.all_alive(self.services)
+
+    def test_a_qos_that_does_not_fit_is_named(self):
+        publisher = self.publish("qos")
+
+        def told_of_reliability():
+            return {e["source_name"] for e in self.told() if e["code"] == INCOMPATIBLE_QOS and "frame" in e["text"] and "RELIABILITY" in e["text"].upper()}
+
+        self.eventually(lambda: LANES <= told_of_reliability(), "every lane names the policy", timeout=12)
         self.stop(publisher)
         self.all_alive(self.services)
 

@@ -27,10 +27,10 @@ static dds_entity_t made(dds_entity_t entity, const char* what)
     exit(1);
 }
 
-static dds_entity_t writer_of(dds_entity_t participant, const dds_topic_descriptor_t* type, const char* name, int latched)
+static dds_entity_t writer_of(dds_entity_t participant, const dds_topic_descriptor_t* type, const char* name, int latched, int reliable)
 {
     dds_qos_t* qos = dds_create_qos();
-    dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
+    dds_qset_reliability(qos, reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, DDS_MSECS(100));
     dds_qset_durability(qos, latched ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
     dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, latched ? 1 : 64);
     const dds_entity_t writer =
@@ -87,13 +87,14 @@ int main(int argc, char** argv)
                            "</Domain></CycloneDDS>"),
          "domain");
     const dds_entity_t participant = made(dds_create_participant(domain, NULL, NULL), "participant");
-    const dds_entity_t descriptions = writer_of(participant, &quorient_msgs_ClusterDescription_desc, "quorient/cluster", 1);
-    if (MISTAKE("type")) {
-        writer_of(participant, &quorient_msgs_ServiceStatus_desc, "quorient/frame", 0);
+    const dds_entity_t descriptions = writer_of(participant, &quorient_msgs_ClusterDescription_desc, "quorient/cluster", 1, 1);
+    if (MISTAKE("type") || MISTAKE("qos")) {
+        const int other_type = MISTAKE("type");
+        writer_of(participant, other_type ? &quorient_msgs_ServiceStatus_desc : &quorient_msgs_SensorFrame_desc, "quorient/frame", 0, other_type);
         while (!stop) dds_sleepfor(DDS_MSECS(5));
         return 0;
     }
-    const dds_entity_t frames = writer_of(participant, &quorient_msgs_SensorFrame_desc, "quorient/frame", 0);
+    const dds_entity_t frames = writer_of(participant, &quorient_msgs_SensorFrame_desc, "quorient/frame", 0, 1);
 
     struct timespec now;
     clock_gettime(CLOCK_REALTIME, &now);
