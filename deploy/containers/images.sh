@@ -25,12 +25,13 @@ make_base_image() {
     return $code
 }
 
-# @param 1 tag  @param 2 .deb  @param 3 log file
+# @param 1 tag  @param 2 build folder, with its packages  @param 3 log file
 make_image() {
-    local context code
-    context=$(mktemp -d)
-    cp "$2" "$context/quorient.deb" && cp "$root/deploy/images/observe" "$context/" || return 1
-    DOCKER_BUILDKIT=0 docker build --network=host -t "$1" -f "$root/deploy/images/Dockerfile.packages" "$context" >"$3" 2>&1
+    local context code package
+    package=$(ls -t "$2"/quorient_*.deb | head -1)
+    context=$(mktemp -d "${TMPDIR:-/tmp}/quorient-image.XXXXXX")
+    cp "$package" "$context/quorient.deb" && cp "$2/bin/quorient-observer" "$context/" &&
+        DOCKER_BUILDKIT=0 docker build --network=host --force-rm -t "$1" -f "$root/deploy/images/Dockerfile.packages" "$context" >"$3" 2>&1
     code=$?
     rm -rf "$context"
     [ $code -eq 0 ] || tail -20 "$3" >&2

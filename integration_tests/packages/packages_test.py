@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """What is installed serves somebody who has only that: the programs run, and find_package(quorient) builds a consumer."""
+import gzip
 import os
 import pathlib
 import shutil
@@ -26,16 +27,25 @@ class Installed(unittest.TestCase):
         installed = run("cmake", "--install", BUILD, "--prefix", cls.prefix)
         assert installed.returncode == 0, installed.stderr
 
-    def test_programs_explain_themselves_and_the_configurations_load(self):
+    def test_programs_explain_themselves_with_a_manual_page_and_the_demo_runs(self):
         for program in ("quorient", "quorient-sensor", "quorient-fdi", "quorient-attitude", "quorient-voter"):
             helped = run(self.prefix / "bin" / program, "--help")
             self.assertEqual(helped.returncode, 0, program)
             self.assertIn("Usage", helped.stdout)
+            manual = self.manual_of(program)
+            self.assertIn(f".TH {program.upper()} 1", manual)
+            self.assertIn(r"\-\-help", manual)
+            self.assertNotIn(str(BUILD), manual, "the page names the build machine")
+        self.assertIn(".SH LAUNCH", self.manual_of("quorient"))
         launched = run(
             self.prefix / "bin/quorient", "launch", self.prefix / "share/quorient/demo.yaml", "--json", "--domain", 119,
             "--set", "source.duration_s=1", "--set", "expect=null", env=dict(os.environ, QUORIENT_RUN_DIR=str(self.folder / "run")),
         )
         self.assertEqual(launched.returncode, 0, launched.stderr)
+
+    def manual_of(self, program):
+        with gzip.open(self.prefix / f"share/man/man1/{program}.1.gz", "rt") as page:
+            return page.read()
 
     def test_consumer_outside_the_tree_builds_and_isolates_an_axis(self):
         build = self.folder / "consumer"

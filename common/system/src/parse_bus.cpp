@@ -25,6 +25,7 @@ void parse_process(runtime::Section& section, const Overrides& overrides, Proces
     section.text("interface", process.bus.interface);
     if (process.bus.interface == "any") process.bus.interface.clear();
     section.texts("peers", process.bus.peers);
+    section.whole("participants_per_host", process.bus.participants_per_host, 1, 60);
     section.boolean("security", process.bus.security);
     section.boolean("spin", process.spin);
     section.boolean("stamps", process.node.stamps);

@@ -13,6 +13,9 @@ void BusOptions::add_to(CLI::App& verb)
     verb.add_option("--peer", peers, "IPv4 address to look for peers at, in place of multicast (repeatable)")
         ->type_name("ADDRESS")
         ->allow_extra_args(false);
+    verb.add_option("--participants-per-host", participants_per_host, "That an address of --peer may have")
+        ->check(CLI::Range(1, 60))
+        ->capture_default_str();
     verb.add_option("--unit", unit, "Unit id")->capture_default_str();
 }
 
@@ -28,6 +31,7 @@ std::unique_ptr<bus::Bus> BusOptions::open(const std::string& participant) const
     settings.domain = domain;
     settings.interface = interface == "any" ? "" : interface;
     settings.peers = peers;
+    settings.participants_per_host = participants_per_host;
     settings.participant = participant;
     settings.voted_lease_s = voted_lease_s;
     auto opened = bus::open(settings);

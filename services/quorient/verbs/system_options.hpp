@@ -14,6 +14,7 @@ struct BusOptions {
     std::uint32_t domain = 42;
     std::string interface = "lo";
     std::vector<std::string> peers;
+    std::uint32_t participants_per_host = bus::Settings{}.participants_per_host;
     std::uint32_t unit = 1;
     double voted_lease_s = 0.05;  ///< see bus::Settings
 

@@ -251,12 +251,12 @@ std::string configuration(const Settings& settings, bool shared)
     const bool unicast = !settings.peers.empty();
     return fmt::format(
         "<CycloneDDS><Domain Id=\"any\"><General>{}<AllowMulticast>{}</AllowMulticast></General>"
-        "<Discovery>{}<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>60</MaxAutoParticipantIndex></Discovery>"
+        "<Discovery>{}<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>{}</MaxAutoParticipantIndex></Discovery>"
         "<Internal><GenerateKeyhash>true</GenerateKeyhash><NackDelay>1ms</NackDelay>"
         "<HeartbeatInterval min=\"1ms\" minsched=\"2ms\" max=\"100ms\">{}us</HeartbeatInterval></Internal>"
         "<SharedMemory><Enable>{}</Enable><LogLevel>warn</LogLevel></SharedMemory></Domain></CycloneDDS>",
         interface, !unicast, unicast ? fmt::format("<Peers>{}</Peers>", peers) : std::string{},
-        static_cast<long>(settings.heartbeat_s * 1e6), shared);
+        unicast ? settings.participants_per_host - 1 : 60, static_cast<long>(settings.heartbeat_s * 1e6), shared);
 }
 
 }  // namespace

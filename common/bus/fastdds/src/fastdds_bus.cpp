@@ -1,7 +1,7 @@
 #include "quorient/bus/fastdds_bus.hpp"
 
-#include "quorient/bus/interfaces.hpp"
 #include "guarded_transport.hpp"
+#include "quorient/bus/interfaces.hpp"
 #include "ros2.hpp"
 #include "types.hpp"
 
@@ -267,19 +267,15 @@ private:
     std::map<std::string, dds::Topic*> topics_;
 };
 
-/// Participants that a host may have, by the default port mapping [RTPS 9.6.1.1]: discovery at 7400 + 250 domain + 10 + 2 p, data one
-/// above.
-constexpr std::uint32_t participants_per_host = 30;
-
-/// Where to look for peers, and at the same time every address that samples may go to: Fast DDS 2.9.1 (built with statistics) aborts when
-/// it matches an endpoint behind an address that it has not opened yet, which a list known from the start prevents
-/// [eProsima/Fast-DDS issue 3285].
-void add_peer(const std::string& address, std::uint32_t domain, eprosima::fastrtps::rtps::LocatorList_t& peers)
+/// The default port mapping [RTPS 9.6.1.1]: discovery of participant p at 7400 + 250 domain + 10 + 2 p, data one above. Where to look for
+/// peers, and at the same time every address that samples may go to: Fast DDS 2.9.1 (built with statistics) aborts when it matches an
+/// endpoint behind an address that it has not opened yet, which a list known from the start prevents [eProsima/Fast-DDS issue 3285].
+void add_peer(const std::string& address, const Settings& settings, eprosima::fastrtps::rtps::LocatorList_t& peers)
 {
-    for (std::uint32_t port = 10; port < 10 + 2 * participants_per_host; ++port) {
+    for (std::uint32_t port = 10; port < 10 + 2 * settings.participants_per_host; ++port) {
         eprosima::fastrtps::rtps::Locator_t locator;
         eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, address);
-        locator.port = 7400 + 250 * domain + port;
+        locator.port = 7400 + 250 * settings.domain + port;
         peers.push_back(locator);
     }
 }
@@ -316,9 +312,9 @@ tl::expected<std::unique_ptr<Bus>, std::string> open_fastdds(const Settings& set
     builtin.discovery_config.initial_announcements.period = seconds(0.1);
     builtin.discovery_config.leaseDuration_announcementperiod = seconds(1);
     builtin.discovery_config.leaseDuration = seconds(10);
-    for (const auto& peer : settings.peers) add_peer(peer, settings.domain, builtin.initialPeersList);
+    for (const auto& peer : settings.peers) add_peer(peer, settings, builtin.initialPeersList);
     if (settings.peers.empty()) {
-        for (const auto& own : addresses_of(settings.interface)) add_peer(own, settings.domain, builtin.initialPeersList);
+        for (const auto& own : addresses_of(settings.interface)) add_peer(own, settings, builtin.initialPeersList);
         add_multicast(settings.domain, builtin.initialPeersList);
     }
 

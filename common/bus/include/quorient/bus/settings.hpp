@@ -29,6 +29,8 @@ struct Settings {
     double heartbeat_s = 0.0025;  ///< of reliable writers: at most half a frame interval
     double voted_lease_s = 0.05;  ///< that a reader of `voted` asks for: at least the writers'
     bool security = false;        ///< DDS Security asked for; refused together with shared memory
+    /// That a peer's address may have, ours among them: each is announced to once a second, so many addresses want a small number.
+    std::uint32_t participants_per_host = 30;
 };
 
 /// @returns an error that lists the words, e.g. for "opendds".

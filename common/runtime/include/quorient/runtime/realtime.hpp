@@ -11,7 +11,7 @@ struct RealtimeSettings {
     std::vector<std::uint32_t> processors;  ///< allowed; empty = all
 };
 
-/// Asks the kernel for what is set; each refusal is one warning, and the service goes on without.
+/// Asks the kernel for what is set. What it refuses is named in one warning, and the service goes on without.
 void ask_for_realtime(const RealtimeSettings& settings);
 
 }  // namespace quorient::runtime
