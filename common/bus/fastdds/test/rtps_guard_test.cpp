@@ -101,6 +101,23 @@ TEST(RtpsGuard, refuses_what_is_cut_and_reads_nothing_behind_the_end)
     }
 }
 
+TEST(RtpsGuard, refuses_inline_qos_that_reaches_beyond_its_submessage)
+{
+    const auto with_data = [](bool little, std::uint8_t flags, std::uint32_t parameter) {
+        const std::uint32_t octets_to_inline_qos = little ? 16U << 16U : 16U;
+        auto datagram = with_words(0x15, little, {octets_to_inline_qos, 0x0102, 0x0103, 0, 1, parameter, 0, little ? 1U : 1U << 16U, 0, 0});
+        datagram[21] = static_cast<std::uint8_t>(datagram[21] | flags);
+        return datagram;
+    };
+    for (const bool little : {true, false}) {
+        const auto of_length = [&](std::uint32_t length) { return little ? length << 16U | 0x70U : 0x70U << 16U | length; };
+        EXPECT_TRUE(sound(with_data(little, 0x06, of_length(4))));
+        EXPECT_FALSE(sound(with_data(little, 0x06, of_length(400))));
+        EXPECT_FALSE(sound(with_data(little, 0x06, of_length(12)))) << "no end in sight";
+        EXPECT_TRUE(sound(with_data(little, 0x04, of_length(400)))) << "no inline QoS";
+    }
+}
+
 TEST(RtpsGuard, refuses_gaps_that_would_be_walked_for_ever)
 {
     for (const bool little : {true, false}) {
