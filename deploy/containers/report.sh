@@ -5,7 +5,7 @@ write_report() {
     {
         echo "# The system in containers under faults"
         echo
-        echo "Made by \`deploy/test --containers --report integration_tests/results/containers.md\`, $(uname -m), $(nproc) processors, $(date -u +%Y-%m-%d)."
+        echo "Made by \`deploy/containers/run --report integration_tests/results/containers.md\`, $(uname -m), $(nproc) processors, $(date -u +%Y-%m-%d)."
         echo
         echo '```'
         sed '/up$/q' "$logs/steps.log"

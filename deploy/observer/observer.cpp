@@ -1,6 +1,7 @@
 // Prints what a plain subscriber receives: Fast DDS and the wire contract, nothing else of Quorient. `TOPIC {sample}` a line, until it is
 // told to end.   usage: quorient-observer SYSTEM.yaml
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPFinder.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <yaml-cpp/yaml.h>
 #include <algorithm>
@@ -57,6 +58,22 @@ Options read(const char* file)
             system["peers"].as<std::vector<std::string>>(), system["participants_per_host"].as<std::uint32_t>()};
 }
 
+/// A peer on Cyclone DDS 0.10 sends to the first address that we announce, and the kernel's own order of two networks is not always the
+/// same.
+void announce_in_order(WireProtocolConfigQos& wire)
+{
+    using namespace eprosima::fastrtps::rtps;
+    std::vector<IPFinder::info_IP> found;
+    IPFinder::getIPs(&found, false);
+    std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.locator < b.locator; });
+    for (auto& own : found) {
+        if (own.type != IPFinder::IP4) continue;
+        own.locator.port = 0;  // filled in by Fast DDS
+        wire.builtin.metatrafficUnicastLocatorList.push_back(own.locator);
+        wire.default_unicast_locator_list.push_back(own.locator);
+    }
+}
+
 /// Fast DDS 2.9.1 must know every address from the start.
 DomainParticipantQos participant_qos(const Options& options)
 {
@@ -68,6 +85,7 @@ DomainParticipantQos participant_qos(const Options& options)
     builtin.discovery_config.initial_announcements.count = 50;
     builtin.discovery_config.initial_announcements.period = {0, 100'000'000};
     builtin.discovery_config.leaseDuration_announcementperiod = {1, 0};
+    announce_in_order(qos.wire_protocol());
     for (const auto& peer : options.peers) {
         for (std::uint32_t port = 10; port < 10 + 2 * options.participants_per_host; ++port) {
             eprosima::fastrtps::rtps::Locator_t locator;

@@ -52,6 +52,18 @@ std::vector<std::string> addresses_of(std::string_view which)
     return result;
 }
 
+std::vector<std::string> own_addresses()
+{
+    auto found = interfaces();
+    std::sort(found.begin(), found.end(),
+              [](const Interface& a, const Interface& b) { return ntohl(a.address.s_addr) < ntohl(b.address.s_addr); });
+    std::vector<std::string> result;
+    for (const auto& entry : found) {
+        if (ntohl(entry.address.s_addr) >> IN_CLASSA_NSHIFT != IN_LOOPBACKNET) result.push_back(text_of(entry.address));
+    }
+    return result;
+}
+
 std::vector<std::string> interface_names()
 {
     std::vector<std::string> names;

@@ -1,7 +1,13 @@
 #include "quorient/bus/bus.hpp"
+#include "quorient/bus/interfaces.hpp"
 
+#include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 namespace quorient::bus {
 
@@ -44,6 +50,19 @@ TEST(BusSettings, take_an_interface_by_its_subnet)
     Settings settings;
     settings.interface = "127.0.0.0";
     EXPECT_THAT(problems(settings), IsEmpty());
+}
+
+TEST(BusInterfaces, of_this_host_are_told_lowest_address_first_and_without_loopback)
+{
+    const auto found = own_addresses();
+    std::vector<std::uint32_t> numbers;
+    for (const auto& address : found) {
+        ASSERT_TRUE(is_ipv4_address(address));
+        EXPECT_EQ(addresses_of(address), std::vector{address});
+        numbers.push_back(ntohl(inet_addr(address.c_str())));
+        EXPECT_NE(numbers.back() >> 24, 127U) << address;
+    }
+    EXPECT_TRUE(std::is_sorted(numbers.begin(), numbers.end()));
 }
 
 TEST(BusSettings, refuse_peers_that_are_names)

@@ -289,6 +289,18 @@ void add_multicast(std::uint32_t domain, eprosima::fastrtps::rtps::LocatorList_t
     peers.push_back(locator);
 }
 
+/// On several networks: the own addresses in an order that does not change. Cyclone DDS 0.10 sends to the first one alone. Without ports
+/// Fast DDS fills in those of the participant.
+void announce_in_order(dds::WireProtocolConfigQos& wire)
+{
+    for (const auto& address : own_addresses()) {
+        eprosima::fastrtps::rtps::Locator_t locator;
+        eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, address);
+        wire.builtin.metatrafficUnicastLocatorList.push_back(locator);
+        wire.default_unicast_locator_list.push_back(locator);
+    }
+}
+
 void add_transports(const Settings& settings, dds::TransportConfigQos& transports)
 {
     transports.use_builtin_transports = false;
@@ -312,6 +324,7 @@ tl::expected<std::unique_ptr<Bus>, std::string> open_fastdds(const Settings& set
     builtin.discovery_config.initial_announcements.period = seconds(0.1);
     builtin.discovery_config.leaseDuration_announcementperiod = seconds(1);
     builtin.discovery_config.leaseDuration = seconds(10);
+    if (settings.interface.empty() && !settings.peers.empty() && !shares_memory(settings)) announce_in_order(qos.wire_protocol());
     for (const auto& peer : settings.peers) add_peer(peer, settings, builtin.initialPeersList);
     if (settings.peers.empty()) {
         for (const auto& own : addresses_of(settings.interface)) add_peer(own, settings, builtin.initialPeersList);
