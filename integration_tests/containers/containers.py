@@ -86,9 +86,12 @@ class Containers:
 
     def kill(self, *names):
         """As a crash: by the processes' ids, so that Docker's restart policy brings them back, which it does not after `docker kill`."""
-        processes = self.processes()
         for name in names:
-            os.kill(processes[name], signal.SIGKILL)
+            os.kill(self._processes[name], signal.SIGKILL)
+
+    def look(self):
+        """Before a kill, so that it happens when it is said to: Docker takes its time to answer."""
+        self._processes = self.processes()
 
     def pause(self, name):
         run("docker", "pause", self.ids[name])

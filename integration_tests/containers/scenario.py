@@ -159,6 +159,7 @@ def times_broken(observed, chapter):
 
 def play(containers, observed, chapter):
     """@returns how long this machine stood still meanwhile, at its longest."""
+    containers.look()
     chapter.since = observed.newest()
     begin_s = time.monotonic()
     chapter.harm(containers)
