@@ -11,6 +11,7 @@ find_package(Threads REQUIRED)
 find_package(Boost REQUIRED)  # headers only: quantiles
 
 find_package(iceoryx_binding_c REQUIRED)  # Debian's CycloneDDSConfig.cmake does not find it by itself
+find_package(iceoryx_posh REQUIRED)
 find_package(CycloneDDS REQUIRED)
 find_program(IDLC idlc REQUIRED)
 find_package(fastcdr REQUIRED)

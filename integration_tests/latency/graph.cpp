@@ -1,5 +1,6 @@
 // One process of the pipeline's graph with an empty algorithm, straight on a vendor's API: the floor of a whole pipeline.
-// The same processes, topics, types and arrows; nothing is detected, integrated or compared.
+// The same processes, topics, types and arrows; nothing is detected, integrated or compared. With --waits each process waits for what ours
+// waits for: an integrator for the frame and its verdict, a voter for the attitude of lane 0, its primary, and a majority.
 
 #include "quorient/messages/attitude_state.hpp"
 #include "quorient/messages/codes.hpp"
@@ -35,6 +36,7 @@ struct Options {
     double rate_hz = 200;
     double duration_s = 3;
     bool spin = false;
+    bool waits = false;
 };
 
 constexpr std::int64_t second_ns = 1'000'000'000;
@@ -120,17 +122,26 @@ void run_integrator(Raw& raw, const Options& options)
     const auto outputs = raw.reader(Type::voter_output, "quorient/voter_output");
     const auto verdicts = raw.reader(Type::verdict, "quorient/verdict");
     const auto frames = raw.reader(Type::frame, "quorient/frame");
+    SensorFrame frame;
     FaultVerdict verdict;
     AttitudeState attitude;
     attitude.lane = options.number;
+    std::array<Stamps, 1024> stamps{};  // of verdicts by sequence, as a ring
+    std::uint64_t frame_count = 0;
+    std::uint64_t verdict_count = 0;
+    std::uint64_t answered = 0;
     loop(raw, options, [&] {
         drain<VotedAttitude>(*outputs);
-        drain<SensorFrame>(*frames);
         while (verdicts->take(&verdict)) {
             if (verdict.detector != options.number) continue;
+            verdict_count = verdict.sequence + 1;
+            stamps[verdict.sequence % stamps.size()] = verdict.stamp_ns;
+        }
+        while (frames->take(&frame)) frame_count = frame.sequence + 1;
+        for (const auto ready = options.waits ? std::min(frame_count, verdict_count) : verdict_count; answered < ready; ++answered) {
             attitude.epoch = verdict.epoch;
-            attitude.sequence = verdict.sequence;
-            attitude.stamp_ns = verdict.stamp_ns;
+            attitude.sequence = answered;
+            attitude.stamp_ns = stamps[answered % stamps.size()];
             stamp(attitude.stamp_ns, Hop::integrator_in) = stamp(attitude.stamp_ns, Hop::integrator_out) = now_ns();
             attitudes->write(&attitude);
         }
@@ -156,7 +167,10 @@ void run_voter(Raw& raw, const Options& options)
             auto& lanes = seen[attitude.sequence % seen.size()];
             seen[(attitude.sequence + seen.size() / 2) % seen.size()] = 0;
             lanes |= std::uint64_t{1} << attitude.lane;
-            if (std::popcount(lanes) != majority) continue;
+            constexpr std::uint64_t out_already = std::uint64_t{1} << 63U;
+            const bool primary_speaks = !options.waits || (lanes & 1U) != 0;
+            if ((lanes & out_already) != 0 || std::popcount(lanes) < majority || !primary_speaks) continue;
+            lanes |= out_already;
             voted.epoch = attitude.epoch;
             voted.sequence = attitude.sequence;
             voted.stamp_ns = attitude.stamp_ns;
@@ -193,6 +207,7 @@ int main(int argc, char** argv)
     program.add_option("--rate", options.rate_hz)->type_name("HZ");
     program.add_option("--duration", options.duration_s)->type_name("S");
     program.add_flag("--spin", options.spin);
+    program.add_flag("--waits", options.waits, "For all that our processes wait for");
     CLI11_PARSE(program, argc, argv);
     std::signal(SIGTERM, [](int) { stopped = 1; });
     try {

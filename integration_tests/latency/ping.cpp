@@ -60,10 +60,14 @@ bool receive_within_patience(Take take, Wait wait)
     return true;
 }
 
+/// Whether a path spins now in place of blocking.
+using Spins = std::function<bool()>;
+
 class BusPath final : public Path {
 public:
-    BusPath(const bus::Settings& settings, bool first)
-        : bus_(open(settings)),
+    BusPath(const bus::Settings& settings, bool first, Spins spins)
+        : spins_(std::move(spins)),
+          bus_(open(settings)),
           out_(bus_->advertise(first ? ping_topic : pong_topic)),
           in_(bus_->subscribe(first ? pong_topic : ping_topic))
     {
@@ -72,7 +76,7 @@ public:
     void send(const SensorFrame& frame) override { out_.publish(frame); }
     bool receive(SensorFrame& frame) override
     {
-        return receive_within_patience([&] { return in_.take(frame); }, [&](std::int64_t left) { bus_->wait(left); });
+        return receive_within_patience([&] { return in_.take(frame); }, [&](std::int64_t left) { bus_->wait(spins_() ? 0 : left); });
     }
     bool connected() override { return out_.status().matched > 0 && in_.status().matched > 0; }
 
@@ -84,6 +88,7 @@ private:
         return std::move(*bus);
     }
 
+    Spins spins_;
     std::unique_ptr<bus::Bus> bus_;
     bus::Publisher<SensorFrame> out_;
     bus::Subscription<SensorFrame> in_;
@@ -91,8 +96,9 @@ private:
 
 class RawPath final : public Path {
 public:
-    RawPath(Vendor vendor, const latency::RawSettings& settings, bool first)
-        : raw_(vendor == Vendor::fastdds ? latency::open_raw_fastdds(settings) : latency::open_raw_cyclonedds(settings)),
+    RawPath(Vendor vendor, const latency::RawSettings& settings, bool first, Spins spins)
+        : spins_(std::move(spins)),
+          raw_(vendor == Vendor::fastdds ? latency::open_raw_fastdds(settings) : latency::open_raw_cyclonedds(settings)),
           out_(raw_->writer(latency::Type::frame, (first ? ping_topic : pong_topic).spec.name)),
           in_(raw_->reader(latency::Type::frame, (first ? pong_topic : ping_topic).spec.name))
     {
@@ -101,18 +107,20 @@ public:
     void send(const SensorFrame& frame) override { out_->write(&frame); }
     bool receive(SensorFrame& frame) override
     {
-        return receive_within_patience([&] { return in_->take(&frame); }, [&](std::int64_t left) { raw_->wait(left); });
+        return receive_within_patience([&] { return in_->take(&frame); }, [&](std::int64_t left) { raw_->wait(spins_() ? 0 : left); });
     }
     bool connected() override { return out_->matched() > 0 && in_->matched() > 0; }
 
 private:
+    Spins spins_;
     std::unique_ptr<latency::Raw> raw_;
     std::unique_ptr<latency::RawWriter> out_;
     std::unique_ptr<latency::RawReader> in_;
 };
 
-/// Two slots in memory that both processes share, each with its word to sleep on.
+/// Two slots in memory that both processes share, each with its word to sleep on, and whose turn it is.
 struct Shared {
+    std::atomic<std::size_t> turn;
     std::atomic<std::uint32_t> count[2];
     SensorFrame frame[2];
 };
@@ -175,6 +183,7 @@ struct Options {
     int rounds = 5;
     int per_round = 400;  ///< of each path
     int turn = 20;        ///< round trips of one path before the next has its turn
+    bool spin = false;    ///< the paths by DDS
 };
 
 /// What both processes hold from before they part.
@@ -212,11 +221,14 @@ std::vector<NamedPath> make_paths(const Options& options, const Common& common, 
     settings.domain = options.domain;
     settings.heartbeat_s = 0.5 / options.rate_hz;
     std::vector<NamedPath> paths;
-    paths.push_back({"bus", std::make_unique<BusPath>(settings, first)});
+    const auto spins = [&options, &turn = common.shared->turn](std::size_t path) {
+        return [spin = options.spin, &turn, path] { return spin && turn.load(std::memory_order_relaxed) == path; };
+    };
+    paths.push_back({"bus", std::make_unique<BusPath>(settings, first, spins(0))});
     // Another domain: another set of sockets, the same process.
     paths.push_back(
-        {"vendor", std::make_unique<RawPath>(settings.vendor,
-                                             latency::RawSettings{options.domain + 1, settings.transport != Transport::udp}, first)});
+        {"vendor", std::make_unique<RawPath>(
+                       settings.vendor, latency::RawSettings{options.domain + 1, settings.transport != Transport::udp}, first, spins(1))});
     paths.push_back({"futex", std::make_unique<FutexPath>(*common.shared, first)});
     paths.push_back({"udp socket", std::make_unique<UdpPath>(common.sockets[first ? 0 : 1], common.addresses[first ? 1 : 0])});
     return paths;
@@ -258,7 +270,7 @@ void trip(Path& path, std::uint64_t sequence, Tally& tally)
     else ++tally.lost;
 }
 
-nlohmann::json measure(const Options& options, std::vector<NamedPath>& paths)
+nlohmann::json measure(const Options& options, Shared& shared, std::vector<NamedPath>& paths)
 {
     const auto deadline = now_ns() + 10 * second_ns;
     for (auto& named : paths) {
@@ -274,7 +286,10 @@ nlohmann::json measure(const Options& options, std::vector<NamedPath>& paths)
         std::vector<Tally> tallies(paths.size());
         auto due = std::chrono::steady_clock::now();
         for (int turn = 0; turn < (round < 0 ? 3 : options.per_round / options.turn); ++turn) {
-            for (std::size_t i = 0; i < paths.size(); ++i) {
+            for (std::size_t place = 0; place < paths.size(); ++place) {
+                // There and back: who follows whom (and finds the vendor's code in the cache) changes from turn to turn.
+                const auto i = turn % 2 == 0 ? place : paths.size() - 1 - place;
+                shared.turn = i;
                 for (int k = 0; k < options.turn; ++k) {
                     std::this_thread::sleep_until(due);
                     trip(*paths[i].path, ++sequence, tallies[i]);
@@ -290,11 +305,8 @@ nlohmann::json measure(const Options& options, std::vector<NamedPath>& paths)
         }
         rounds.push_back(entry);
     }
-    return {{"dds", options.dds},
-            {"transport", options.transport},
-            {"rate_hz", options.rate_hz},
-            {"bytes", sizeof(SensorFrame)},
-            {"rounds", rounds}};
+    return {{"dds", options.dds},   {"transport", options.transport}, {"rate_hz", options.rate_hz},
+            {"spin", options.spin}, {"bytes", sizeof(SensorFrame)},   {"rounds", rounds}};
 }
 
 int run(const Options& options)
@@ -303,7 +315,7 @@ int run(const Options& options)
     const auto child = ::fork();
     if (child == 0) answer(options, common);
     auto paths = make_paths(options, common, true);
-    std::cout << measure(options, paths) << std::endl;
+    std::cout << measure(options, *common.shared, paths) << std::endl;
     ::kill(child, SIGKILL);
     ::waitpid(child, nullptr, 0);
     return 0;
@@ -319,6 +331,7 @@ int main(int argc, char** argv)
     program.add_option("--transport", options.transport)->check(CLI::IsMember({"udp", "shm", "iceoryx"}));
     program.add_option("--domain", options.domain, "This one and the next");
     program.add_option("--rate", options.rate_hz)->type_name("HZ");
+    program.add_flag("--spin", options.spin, "The paths by DDS, while it is their turn");
     program.add_option("--rounds", options.rounds);
     program.add_option("--per-round", options.per_round);
     CLI11_PARSE(program, argc, argv);

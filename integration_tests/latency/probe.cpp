@@ -2,6 +2,7 @@
 
 #include "quantiles.hpp"
 #include "quorient/bus/bus.hpp"
+#include "quorient/messages/codes.hpp"
 #include "quorient/messages/stamps.hpp"
 
 #include <CLI/CLI.hpp>
@@ -44,7 +45,8 @@ constexpr std::array hops{
     HopName{"sensor_to_voted", Hop::sensor, Hop::voter_out},
 };
 
-nlohmann::json report(const std::vector<Record>& records, std::uint64_t skipped, double interval_s)
+/// @param sent  frames that the sensors say they published, 0 where none speaks.
+nlohmann::json report(const std::vector<Record>& records, std::uint64_t skipped, double interval_s, std::uint64_t sent)
 {
     nlohmann::json result;
     for (const auto& hop : hops) {
@@ -78,6 +80,7 @@ nlohmann::json report(const std::vector<Record>& records, std::uint64_t skipped,
     result["lost"] = lost;
     result["duplicates"] = duplicates;
     result["late"] = late;
+    result["sent"] = sent;
     return result;
 }
 
@@ -89,11 +92,17 @@ int run(const bus::Settings& settings, std::uint64_t skipped, double interval_s)
         return 1;
     }
     auto outputs = (*bus)->subscribe(bus::topics::voter_output);
+    auto statuses = (*bus)->subscribe(bus::topics::status);
+    std::map<std::uint32_t, std::uint64_t> sent_by_unit;
+    ServiceStatus status;
     std::vector<Record> records;
     records.reserve(1 << 19);
     VotedAttitude voted;
     while (!stopped) {
         (*bus)->wait(50'000'000);
+        while (statuses.take(status)) {
+            if (status.role == static_cast<std::uint8_t>(ServiceRole::sensor)) sent_by_unit[status.unit] = status.published;
+        }
         while (outputs.take(voted)) {
             // A voter repeats its last attitude where frames end; only frames count.
             if (voted.level == static_cast<std::uint8_t>(VoteLevel::coasting) || voted.level == static_cast<std::uint8_t>(VoteLevel::lost))
@@ -102,7 +111,9 @@ int run(const bus::Settings& settings, std::uint64_t skipped, double interval_s)
                 {voted.unit, voted.voter, voted.sequence, std::chrono::steady_clock::now().time_since_epoch().count(), voted.stamp_ns});
         }
     }
-    std::cout << report(records, skipped, interval_s) << '\n';
+    std::uint64_t sent = 0;
+    for (const auto& [unit, frames] : sent_by_unit) sent += frames;
+    std::cout << report(records, skipped, interval_s, sent) << '\n';
     return 0;
 }
 
@@ -113,9 +124,11 @@ int main(int argc, char** argv)
     CLI::App program{"Reads the stamps of every voted attitude of one domain until SIGTERM, then prints each hop's quantiles as JSON."};
     bus::Settings settings;
     std::string dds = "cyclonedds";
+    std::string transport = "udp";
     std::uint64_t skipped = 0;
     double interval_s = 0.005;
     program.add_option("--dds", dds);
+    program.add_option("--transport", transport)->check(CLI::IsMember({"udp", "shm", "iceoryx"}));
     program.add_option("--domain", settings.domain);
     program.add_option("--skip", skipped, "Frames of the start that do not count");
     program.add_option("--interval", interval_s, "An attitude older than this at the voter's output is late")->type_name("S");
@@ -126,6 +139,7 @@ int main(int argc, char** argv)
         return 2;
     }
     settings.vendor = *vendor;
+    settings.transport = bus::transport_from(transport).value();
     std::signal(SIGTERM, [](int) { stopped = 1; });
     return run(settings, skipped, interval_s);
 }

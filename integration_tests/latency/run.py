@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Measures the latency of real pipelines beside their floors, in turns, and writes JSON and a table.
 
-    sudo nice -n -15 integration_tests/latency/run.py            # everything, about ten minutes
+    sudo nice -n -15 integration_tests/latency/run.py            # everything, at most 20 minutes
+    integration_tests/latency/run.py --quick                     # everything once and short: does it work?
     integration_tests/latency/run.py --only hops,transports --rounds 1 --seconds 1
 
-Every ratio is of two runs that stand beside each other in time; of the rounds the median counts."""
+Every ratio is of runs of one round, which stand beside each other in time; of the rounds the median counts."""
 import argparse
 import json
 import os
@@ -12,7 +13,6 @@ import pathlib
 import platform
 import shutil
 import socket
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -26,6 +26,8 @@ BIN = pathlib.Path(os.environ.get("QUORIENT_BIN", ROOT / "build/release/bin"))
 TICK_S = 1 / os.sysconf("SC_CLK_TCK")
 PAGE_MIB = os.sysconf("SC_PAGE_SIZE") / 2**20
 START_PATIENCE_S = 15
+DOMAINS = 8  # used in turns: the one before may still be saying goodbye
+FLOORS = ("floor", "floor_that_waits")
 
 # Name -> the keys of the system file for sensor, lanes and voters in turn, and the floor's arguments.
 TRANSPORTS = {
@@ -37,6 +39,7 @@ TRANSPORTS = {
 }
 LAYOUTS = {4: "cone-4", 6: "cone-6", 8: "octahedron-8", 24: "triads-8"}
 PINGS = (("cyclonedds", "udp"), ("fastdds", "udp"), ("fastdds", "shm"), ("cyclonedds", "iceoryx"))
+SPINNING_PINGS = (("cyclonedds", "udp"), ("cyclonedds", "iceoryx"))
 
 
 class Roudi:
@@ -136,28 +139,39 @@ def floor_commands(case, domain, seconds):
     return commands
 
 
+def probe_command(case, domain, skip):
+    reads_by = TRANSPORTS[case["transport"]][0][0]
+    return [BIN / "quorient-latency-probe", "--dds", reads_by["dds"], "--transport", reads_by.get("transport", "udp"), "--domain", domain, "--skip", skip,
+            "--interval", 1 / case["rate_hz"]]
+
+
 class Runner:
     def __init__(self, options):
         self.options = options
         self.directory = pathlib.Path(tempfile.mkdtemp(prefix="quorient-latency-"))
         self.domain = options.domain
+        self.deadline = time.monotonic() + 60 * options.limit
+        self.skipped = []
+
+    def out_of_time(self, what):
+        """@returns whether this is to be left out; it is told in the results."""
+        if time.monotonic() < self.deadline:
+            return False
+        self.skipped.append(what)
+        return True
 
     def run(self, commands, domain, case, seconds):
         """One run until its sensors have ended. @returns the probe's report with the processes' usage."""
-        vendor = TRANSPORTS[case["transport"]][0][0]["dds"]
         environment = dict(os.environ, QUORIENT_RUN_DIR=str(self.directory))
         skip = int(0.2 * seconds * case["rate_hz"])  # caches, branch predictors and the last matches
-        probe = subprocess.Popen(
-            list(map(str, [BIN / "quorient-latency-probe", "--dds", vendor, "--domain", domain, "--skip", skip, "--interval", 1 / case["rate_hz"]])),
-            stdout=subprocess.PIPE, text=True, env=environment,
-        )
-        processes = {
-            name: subprocess.Popen(list(map(str, command)), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment)
-            for name, command in commands.items()
-        }
+        start = lambda command, **more: subprocess.Popen(list(map(str, command)), env=environment, **more)  # noqa: E731
+        probe = start(probe_command(case, domain, skip), stdout=subprocess.PIPE, text=True)
+        processes = {name: start(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for name, command in commands.items()}
         sensors = [process for name, process in processes.items() if name.endswith("sensor")]
+        units = case.get("units", 1)
+        heard = 1 if case.get("own_domains") else units  # by the probe, in its domain
         try:
-            time.sleep(self.options.settle + 0.2 * seconds)
+            time.sleep(self.options.settle + 0.2 * units + 0.2 * seconds)
             usage = Usage(processes)
             time.sleep(0.5 * seconds)
             used = usage.end()
@@ -168,92 +182,127 @@ class Runner:
             for process in [*processes.values(), probe]:
                 if process.poll() is None:
                     process.terminate()
-            for process in processes.values():
+            for process in [*processes.values(), probe]:
                 try:
                     process.wait(timeout=5)
                 except subprocess.TimeoutExpired:
                     process.kill()
                     process.wait()
-        report = json.loads(probe.communicate(timeout=20)[0])
+        report = json.loads(probe.stdout.read())
         report["processes"] = used
-        report["expected"] = int(round(seconds * case["rate_hz"])) * case.get("units", 1) - skip * case.get("units", 1)
+        whole = int(round(seconds * case["rate_hz"])) * heard
+        report["expected"] = whole - skip * heard
+        report["never_sent"] = whole - report["sent"] if report["sent"] else 0
         return report
 
     def ours(self, case, seconds):
-        self.domain = self.options.domain + (self.domain - self.options.domain + 1) % 8
         commands = {}
         for unit in range(1, case.get("units", 1) + 1):
-            file = system_file(self.directory, case, self.domain, unit, seconds)
+            domain = self.next_domain(unit - 1) if case.get("own_domains") else self.domain
+            file = system_file(self.directory, case, domain, unit, seconds)
             commands.update(our_commands(file, case, f"{unit}/" if case.get("units", 1) > 1 else ""))
         return self.run(commands, self.domain, case, seconds)
 
     def floor(self, case, seconds):
-        self.domain = self.options.domain + (self.domain - self.options.domain + 1) % 8
         return self.run(floor_commands(case, self.domain, seconds), self.domain, case, seconds)
 
-    def in_turns(self, case):
-        """Ours and its floor by turns."""
-        rounds = []
-        for turn in range(self.options.rounds):
-            entry = {"ours": self.ours(case, self.options.seconds)}
-            if TRANSPORTS[case["transport"]][1]:
-                entry["floor"] = self.floor(case, self.options.seconds)
-            rounds.append(entry)
-            tell(case, turn, entry)
-        return {"case": case, "rounds": rounds}
+    def floor_that_waits(self, case, seconds):
+        commands = {name: [*command, "--waits"] for name, command in floor_commands(case, self.domain, seconds).items()}
+        return self.run(commands, self.domain, case, seconds)
+
+    def next_domain(self, steps):
+        return self.options.domain + (self.domain - self.options.domain + steps) % DOMAINS
+
+    def once(self, who, case, seconds):
+        """A run that fails is told, and costs no other."""
+        self.domain = self.next_domain(1)
+        try:
+            return getattr(self, who)(case, seconds)
+        except (OSError, ValueError, subprocess.SubprocessError) as error:
+            print(f"{case} {who}: {error!r}", file=sys.stderr, flush=True)
+            return None
+
+    def in_turns(self, cases, rounds, floors=FLOORS):
+        """All cases of a round beside each other, ours and the floors by turns."""
+        results = [{"case": case, "rounds": []} for case in cases]
+        for turn in range(rounds):
+            for result in results:
+                case = result["case"]
+                if self.out_of_time(f"{table.name_of(case)}, round {turn + 1}"):
+                    continue
+                whom = ["ours", *(floors if TRANSPORTS[case["transport"]][1] and case.get("units", 1) == 1 else ())]
+                entry = {who: self.once(who, case, self.options.seconds) for who in [*whom[turn % len(whom):], *whom[:turn % len(whom)]]}
+                result["rounds"].append({who: report for who, report in entry.items() if report})
+                tell(case, turn, result["rounds"][-1])
+        return [result for result in results if any("ours" in entry for entry in result["rounds"])]
 
 
 def tell(case, turn, entry):
-    parts = [f"{name} p50 {r['hops']['sensor_to_voted']['p50']:.0f} us, lost {r['lost']}" if r["hops"]["sensor_to_voted"] else f"{name}: nothing" for name, r in entry.items()]
-    print(f"{case} round {turn + 1}: {'; '.join(parts)}", file=sys.stderr, flush=True)
+    def of(report):
+        voted = report["hops"]["sensor_to_voted"]
+        return f"p50 {voted['p50']:.0f} us, lost {table.lost(report)}" if voted else "nothing"
+
+    parts = [f"{who} {of(report)}" for who, report in entry.items()]
+    print(f"{table.name_of(case)}, round {turn + 1}: {'; '.join(parts)}", file=sys.stderr, flush=True)
 
 
 def hops(runner):
     results = []
-    for vendor, transport in PINGS:
-        command = [BIN / "quorient-latency-ping", "--dds", vendor, "--transport", transport, "--domain", runner.options.domain + 8,
-                   "--rounds", max(3, runner.options.rounds), "--per-round", runner.options.pings]
-        done = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=180)
-        if done.returncode:
-            print(done.stderr, file=sys.stderr)
-            continue
-        results.append(json.loads(done.stdout))
-        print(vendor, transport, {name: value["p50"] for name, value in results[-1]["rounds"][0].items()}, file=sys.stderr, flush=True)
+    for spin, paths in ((False, PINGS), (True, SPINNING_PINGS)):
+        for vendor, transport in paths:
+            command = [BIN / "quorient-latency-ping", "--dds", vendor, "--transport", transport, "--domain", runner.options.domain + DOMAINS,
+                       "--rounds", max(3, runner.options.rounds), "--per-round", runner.options.pings, *(["--spin"] if spin else [])]
+            done = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=180)
+            if done.returncode:
+                print(done.stderr, file=sys.stderr)
+                continue
+            results.append(json.loads(done.stdout))
+            medians = {name: value["p50"] for name, value in results[-1]["rounds"][0].items() if "p50" in value}
+            print(vendor, transport, "spinning" if spin else "blocking", medians, file=sys.stderr, flush=True)
     return results
 
 
 def transports(runner):
-    cases = [{"transport": name, "rate_hz": rate} for rate in (200, 1000) for name in TRANSPORTS]
-    return [runner.in_turns(case) for case in cases]
+    results = []
+    for rate in (200, 1000):
+        results += runner.in_turns([{"transport": name, "rate_hz": rate} for name in TRANSPORTS], runner.options.rounds)
+    return results
 
 
 def spinning(runner):
-    return [runner.in_turns({"transport": "UDP, Cyclone DDS", "rate_hz": 1000, "lanes": 1, "voters": 1, "spin": spin}) for spin in (False, True)]
+    """A core for every process is more than two cores have: that is what it shows there."""
+    cases = [{"transport": "UDP, Cyclone DDS", "rate_hz": 1000, "lanes": 1, "voters": 1, "spin": spin} for spin in (False, True)]
+    return runner.in_turns(cases, runner.options.rounds, FLOORS[:1])
 
 
 def sustained(runner):
     """One minute at 1 kHz, then faster until frames are lost."""
-    case = {"transport": "UDP, Cyclone DDS", "rate_hz": 1000}
-    minute = {"case": case, "seconds": runner.options.minute, "report": runner.ours(case, runner.options.minute)}
-    ladder = []
-    for rate in (1500, 2000, 3000, 4000, 6000):
-        report = runner.ours({**case, "rate_hz": rate}, runner.options.seconds)
-        ladder.append({"rate_hz": rate, "report": report})
-        if table.lost(report) > 0.001 * report["expected"]:
-            break
-    return {"minute": minute, "ladder": ladder}
+    results = []
+    for name in ("UDP, Cyclone DDS", "iceoryx, Cyclone DDS"):
+        case = {"transport": name, "rate_hz": 1000}
+        minute = runner.once("ours", case, runner.options.minute)
+        if not minute:
+            continue
+        print(f"{name}: {table.lost(minute)} of {minute['expected']} lost in {runner.options.minute} s", file=sys.stderr, flush=True)
+        ladder = []
+        for rate in (1500, 2000, 3000, 4000, 6000):
+            report = runner.once("ours", {**case, "rate_hz": rate}, runner.options.seconds)
+            if not report:
+                break
+            ladder.append({"rate_hz": rate, "report": report})
+            if table.lost(report) > 0:
+                break
+        results.append({"case": case, "seconds": runner.options.minute, "report": minute, "ladder": ladder})
+    return results
 
 
 def growth(runner):
     base = {"transport": "UDP, Cyclone DDS", "rate_hz": 200}
-    cases = [{**base, "lanes": lanes} for lanes in (1, 3, 5, 7)]
-    cases += [{**base, "axes": axes} for axes in LAYOUTS]
-    cases += [{**base, "lanes": 1, "voters": 1, "units": units} for units in (1, 4, 16)]
-    results = []
-    for case in cases:
-        report = runner.ours(case, runner.options.seconds)
-        results.append({"case": case, "rounds": [{"ours": report}]})
-        tell(case, 0, {"ours": report})
+    rounds = min(2, runner.options.rounds)
+    results = runner.in_turns([{**base, "lanes": lanes} for lanes in (1, 3, 5, 7)], rounds, FLOORS[:1])
+    results += runner.in_turns([{**base, "axes": axes} for axes in LAYOUTS], rounds, ())
+    units = {**base, "lanes": 1, "voters": 1}
+    results += runner.in_turns([{**units, "units": 1}, {**units, "units": 4}, {**units, "units": 4, "own_domains": True}, {**units, "units": 16}], rounds, ())
     return results
 
 
@@ -275,26 +324,37 @@ def machine(options):
 SECTIONS = {"hops": hops, "transports": transports, "sustained": sustained, "growth": growth, "spinning": spinning}
 
 
-def main():
+def parse():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default=",".join(SECTIONS), help="of " + ",".join(SECTIONS))
+    parser.add_argument("--quick", action="store_true", help="one round of 1 s, 5 s in place of the minute")
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--seconds", type=float, default=2.5, help="of frames in each run")
     parser.add_argument("--settle", type=float, default=1.2, help="seconds that a pipeline takes to start, before its CPU time counts")
     parser.add_argument("--minute", type=float, default=60, help="seconds of the long run at 1 kHz")
     parser.add_argument("--pings", type=int, default=1000, help="of each path in each round")
+    parser.add_argument("--limit", type=float, default=20, help="minutes after which what is left is left out, and named")
     parser.add_argument("--domain", type=int, default=30, help="this one and the nine after it")
     parser.add_argument("--out", type=pathlib.Path, default=HERE.parent / "results/latency", help="NAME: writes NAME.json and NAME.md")
     options = parser.parse_args()
+    if options.quick:
+        options.rounds, options.seconds, options.minute, options.pings = 1, 1, 5, 100
+    return options
+
+
+def main():
+    options = parse()
     results = {"machine": machine(options)}
     runner = Runner(options)
+    options.out.parent.mkdir(parents=True, exist_ok=True)
     try:
         with Roudi():
             for name in options.only.split(","):
-                results[name] = SECTIONS[name](runner)
+                if not runner.out_of_time(name):
+                    results[name] = SECTIONS[name](runner)
     finally:
         shutil.rmtree(runner.directory, ignore_errors=True)
-        options.out.parent.mkdir(parents=True, exist_ok=True)
+        results["skipped"] = runner.skipped
         options.out.with_suffix(".json").write_text(json.dumps(results, indent=1) + "\n")
         options.out.with_suffix(".md").write_text(table.markdown(results))
     return 0

@@ -15,21 +15,26 @@ import unittest
 from harness import CONFIGURATIONS, ProcessTest
 
 DEMO = CONFIGURATIONS / "demo.yaml"
+UDP, SHARED_MEMORY, ICEORYX = 2, 3, 4  # codes of ServiceStatus.transport (common/messages)
 MEMORY = pathlib.Path("/dev/shm")
 ROUDI = shutil.which("iox-roudi")
+ROUDI_SOCKET = "/tmp/roudi"
+MAY_MOUNT = os.geteuid() == 0 and shutil.which("unshare")
 LANES = (
     "lanes=[{name: a, detector: {method: vector}, transport: iceoryx},"
     "{name: b, dds: fastdds, detector: {method: vector}, transport: shm},"
     "{name: c, transport: iceoryx, detector: {method: extrapolation}}]"
 )
+ONE_LANE = ("--set", "lanes=[{name: a, detector: {method: vector}}]", "--set", "voters=[{name: voter-1}]")
+BY_FASTDDS = ("quorient-fdi", DEMO, "--name", "fdi-a", *ONE_LANE, "--set", "dds=fastdds", "--set", "transport=shm")
+BY_ICEORYX = ("quorient-fdi", DEMO, "--name", "fdi-a", *ONE_LANE, "--set", "transport=iceoryx")
 MIXED = ("--set", "sensor.transport=iceoryx", "--set", LANES, "--set", "voters=[{name: voter-1, transport: iceoryx},{name: voter-2, dds: fastdds}]")
 QUIET = ("--set", "source.faults=[]", "--set", "expect=null", "--set", "source.duration_s=120")
-ONE_LANE = ("--set", "lanes=[{name: a, detector: {method: vector}}]", "--set", "voters=[{name: voter-1}]")
 
 
 def roudi_answers():
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as probe:
-        return probe.connect_ex("/tmp/roudi") == 0
+        return probe.connect_ex(ROUDI_SOCKET) == 0
 
 
 def payload_packets(domain, pattern, seconds):
@@ -64,34 +69,44 @@ class SharedMemory(ProcessTest):
         while roudi_answers() and time.monotonic() < deadline:  # the launcher's children go with it
             time.sleep(0.02)
 
-    def start_roudi(self):
-        process = subprocess.Popen([ROUDI], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    def start_roudi(self, *pools):
+        """@param pools  (size, count) of each; without, those that RouDi has by itself."""
+        configuration = "".join(f"[[segment.mempool]]\nsize = {size}\ncount = {count}\n" for size, count in pools)
+        file = self.write("own-roudi.toml", "[general]\nversion = 1\n[[segment]]\n" + configuration)
+        process = subprocess.Popen([ROUDI, *(["-c", file] if pools else [])], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.processes.append(process)
         self.eventually(roudi_answers, "iox-roudi answers")
         return process
 
     def start_demo(self, *arguments):
         pipeline = self.start("quorient", "launch", DEMO, "--domain", self.domain, "--json", *MIXED, *arguments)
-        self.eventually(lambda: self.run_program("quorient", "health", "voter-1").returncode == 0, "the pipeline runs")
+        self.eventually(lambda: self.frames_of("voter-1") is not None, "the pipeline runs")
+        self.goes_on("voter-1")  # not the heartbeat that a run before this one left
         return pipeline
 
     def start_one_lane(self, *arguments):
-        """Its processes without a launcher, whose monitor reads by UDP."""
-        return [
-            self.start(program, DEMO, "--name", name, "--domain", self.domain, *ONE_LANE, *QUIET, *arguments)
-            for program, name in (("quorient-voter", "voter-1"), ("quorient-attitude", "attitude-a"), ("quorient-fdi", "fdi-a"), ("quorient-sensor", "sensor"))
-        ]
+        """Its processes without a launcher, whose monitor reads by UDP; the sensor is the last."""
+        for program, name in (("quorient-voter", "voter-1"), ("quorient-attitude", "attitude-a"), ("quorient-fdi", "fdi-a"), ("quorient-sensor", "sensor")):
+            command = self.command(program, DEMO, "--name", name, "--domain", self.domain, *ONE_LANE, *QUIET, *arguments)
+            with open(self.run_directory / f"{name}.log", "w") as log:
+                self.processes.append(subprocess.Popen(command, env=self.environment, stdout=log, stderr=subprocess.STDOUT))
+        return self.processes[-4:]
 
     def services(self):
         result = self.run_program("quorient", "status", "--domain", self.domain, "--json")
         return {service["name"]: service for service in json.loads(result.stdout)["services"]} if result.stdout else {}
 
     def frames_of(self, name):
-        return int((self.run_directory / f"{name}.heartbeat").read_text().split()[1])
+        """None before its first."""
+        try:
+            return int((self.run_directory / f"{name}.heartbeat").read_text().split()[1])
+        except (FileNotFoundError, IndexError):
+            return None
 
     def goes_on(self, name, frames=100):
-        begin = self.frames_of(name)
-        self.eventually(lambda: not begin <= self.frames_of(name) < begin + frames, f"{name} handles frames")
+        begin = self.frames_of(name) or 0
+        has_gone_on = lambda now: now is not None and not begin <= now < begin + frames  # noqa: E731
+        self.eventually(lambda: has_gone_on(self.frames_of(name)), f"{name} handles frames")
 
     def log(self, name):
         path = self.run_directory / f"{name}.log"
@@ -112,9 +127,10 @@ class SharedMemory(ProcessTest):
         summary = json.loads(stdout[stdout.index("{"):])
         self.assertEqual(pipeline.returncode, 0, summary["unmet"])
         self.assertEqual({name for name, lane in summary["lanes"].items() if lane["isolated"] == [1]}, {"a", "b", "c"})
-        by_iceoryx = {"sensor", "fdi-a", "fdi-c", "attitude-a", "attitude-c", "voter-1"}
-        self.assertEqual({name for name, service in services.items() if service["transport"] == "iceoryx"}, by_iceoryx)
-        self.assertEqual({name for name, service in services.items() if service["transport"] == "shm"}, {"fdi-b", "attitude-b"})
+        by = lambda transport: {name for name, service in services.items() if service["transport"] == transport}  # noqa: E731
+        self.assertEqual(by(ICEORYX), {"sensor", "fdi-a", "fdi-c", "attitude-a", "attitude-c", "voter-1"})
+        self.assertEqual(by(SHARED_MEMORY), {"fdi-b", "attitude-b"})
+        self.assertEqual(by(UDP), {"voter-2"})
         for name in ("fdi-a", "attitude-a", "fdi-b", "voter-1"):
             self.assertNotIn("was asked for", self.log(name))
 
@@ -143,8 +159,10 @@ class SharedMemory(ProcessTest):
 
     def test_without_roudi_a_process_says_so_within_a_second_or_goes_by_udp_with_an_alarm(self):
         begin = time.monotonic()
-        refused = self.run_program("quorient-fdi", DEMO, "--name", "fdi-a", "--domain", self.domain, *ONE_LANE, "--set", "transport=iceoryx")
-        self.assertLess(time.monotonic() - begin, 1)
+        self.run_program(*BY_ICEORYX, "--set", "security=true")  # what a refusal takes here at least, on a busy machine too
+        least = time.monotonic() - begin
+        refused = self.run_program(*BY_ICEORYX, "--domain", self.domain)
+        self.assertLess(time.monotonic() - begin, 2 * least + 1)
         self.assertNotEqual(refused.returncode, 0)
         self.assertIn("iox-roudi does not answer", refused.stderr)
         processes = self.start_one_lane("--set", "transport=iceoryx", "--set", "shared_memory=preferred")
@@ -156,24 +174,81 @@ class SharedMemory(ProcessTest):
         for process in processes:
             process.terminate()
 
-    @unittest.skipUnless(os.geteuid() == 0 and shutil.which("unshare"), "another /dev/shm needs root")
-    def test_a_silent_fallback_of_fastdds_raises_the_alarm(self):
-        for options, expected in (("ro", True), ("rw", False)):
+    def in_other_memory(self, options, *command):
+        """A process whose /dev/shm is another file system."""
+        script = f'mount -t tmpfs -o {options} tmpfs /dev/shm && exec "$@"'
+        process = subprocess.Popen(
+            ["unshare", "-m", "sh", "-c", script, "sh", *self.command(*command)], env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        )
+        self.processes.append(process)
+        return process
+
+    @unittest.skipUnless(MAY_MOUNT, "another /dev/shm needs root")
+    def test_a_silent_fallback_of_fastdds_raises_the_alarm_or_is_refused(self):
+        for options, choice, expected in (("ro", "preferred", True), ("size=1m", "preferred", True), ("rw", "required", False)):
             with self.subTest(options=options):
-                command = self.command(
-                    "quorient-fdi", DEMO, "--name", "fdi-a", "--domain", self.domain, *ONE_LANE, "--set", "dds=fastdds", "--set", "transport=shm"
-                )
-                script = f'mount -t tmpfs -o {options} tmpfs /dev/shm && exec "$@"'
-                process = subprocess.Popen(
-                    ["unshare", "-m", "sh", "-c", script, "sh", *command], env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
-                )
-                self.processes.append(process)
+                process = self.in_other_memory(options, *BY_FASTDDS, "--domain", self.domain, "--set", f"shared_memory={choice}")
                 self.eventually(lambda: (self.run_directory / "fdi-a.heartbeat").exists(), "the detector runs")
                 time.sleep(1.2)  # two looks at its endpoints: that nothing is said can only be seen by waiting
                 process.terminate()
                 told = "shm was asked for" in process.communicate(timeout=10)[0]
                 (self.run_directory / "fdi-a.heartbeat").unlink()
                 self.assertEqual(told, expected)
+        for options, reason in (("ro", "cannot open its shared memory"), ("size=1m", "needs 4 MiB in /dev/shm")):
+            with self.subTest(options=options):
+                process = self.in_other_memory(options, *BY_FASTDDS, "--domain", self.domain)
+                self.assertIn(reason, process.communicate(timeout=20)[0])
+                self.assertNotEqual(process.returncode, 0)
+
+    @unittest.skipUnless(MAY_MOUNT, "another /dev/shm needs root")
+    def test_launch_says_how_much_shared_memory_is_missing(self):
+        process = self.in_other_memory("size=8m", "quorient", "launch", DEMO, "--domain", self.domain, *MIXED, *QUIET)
+        self.assertRegex(process.communicate(timeout=30)[0], r"needs \d+ MiB in /dev/shm, 8 MiB are free")
+        self.assertEqual(process.returncode, 1)
+
+    def test_shared_memory_together_with_security_is_refused_by_both_vendors(self):
+        for dds, transport in (("cyclonedds", "iceoryx"), ("fastdds", "shm")):
+            with self.subTest(dds=dds):
+                refused = self.run_program(
+                    "quorient-fdi", DEMO, "--name", "fdi-a", "--domain", self.domain, *ONE_LANE, "--set", f"dds={dds}", "--set", f"transport={transport}", "--set", "security=true"
+                )
+                self.assertEqual(refused.returncode, 2)
+                self.assertIn("in plain text", refused.stderr)
+
+    def test_a_daemon_that_does_not_take_this_process_in_is_told(self):
+        """As one of another version: RouDi answers nobody whose version is not its own."""
+        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as deaf:
+            pathlib.Path(ROUDI_SOCKET).unlink(missing_ok=True)  # of a daemon that was killed: none answers, or this test would not run
+            deaf.bind(ROUDI_SOCKET)
+            try:
+                begin = time.monotonic()
+                refused = self.run_program(*BY_ICEORYX, "--domain", self.domain)
+                self.assertLess(time.monotonic() - begin, 3)
+            finally:
+                os.unlink(ROUDI_SOCKET)
+        self.assertNotEqual(refused.returncode, 0)
+        self.assertIn("does not take this process in", refused.stderr)
+
+    @unittest.skipUnless(os.geteuid() == 0 and shutil.which("setpriv"), "another user needs root")
+    def test_a_daemon_of_another_user_is_told(self):
+        self.start_roudi()
+        as_nobody = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", *self.command(*BY_ICEORYX, "--domain", self.domain)]
+        refused = subprocess.run(as_nobody, env=self.environment, capture_output=True, text=True, timeout=30)
+        self.assertNotEqual(refused.returncode, 0)
+        self.assertRegex(refused.stderr, "belongs to root|may not open the memory")
+
+    def test_pools_that_are_too_small_are_told_with_the_size_needed(self):
+        self.start_roudi((512, 1000))
+        refused = self.run_program("quorient-sensor", DEMO, "--name", "sensor", "--domain", self.domain, *ONE_LANE, "--set", "transport=iceoryx")
+        self.assertEqual(refused.returncode, 1, refused.stderr)
+        self.assertRegex(refused.stderr, r"no free chunk for quorient/\w+.*size = \d+")
+
+    def test_pools_that_run_out_are_told_and_end_nobody(self):
+        self.start_roudi((1024, 12), (16384, 2))
+        processes = self.start_one_lane("--set", "transport=iceoryx")
+        self.eventually(lambda: "samples not sent" in self.log("sensor"), "the publisher tells it")
+        processes[-1].terminate()
+        self.assertEqual(processes[-1].wait(timeout=10), 0)
 
     def test_the_death_of_roudi_is_told_and_a_lane_comes_back_although_another_roudi_runs(self):
         pipeline = self.start_demo(*QUIET)

@@ -61,15 +61,17 @@ AttitudeIntegrator::AttitudeIntegrator(const system::IntegratorProcess& settings
         bus::topics::frame.spec.name, [this] { return frames_->status(); }, true);
     node_.watch(
         bus::topics::verdict.spec.name, [this] { return verdicts_->status(); }, true);
-    loop.every(readiness_period_ns, [this] { look_at_readiness(); });
+    loop.until(readiness_period_ns, [this] { return look_at_readiness(); });
     loop.when_idle([this] { return integrator_ && integrator_->work(); });
 }
 
-void AttitudeIntegrator::look_at_readiness()
+bool AttitudeIntegrator::look_at_readiness()
 {
-    if (node_.state() == ServiceState::starting && intake_.described() && frames_->status().matched > 0 &&
-        verdicts_->status().matched > 0 && attitudes_.status().matched > 0)
-        node_.set_state(ServiceState::ready);
+    if (node_.state() != ServiceState::starting) return true;
+    if (!intake_.described() || frames_->status().matched == 0 || verdicts_->status().matched == 0 || attitudes_.status().matched == 0)
+        return false;
+    node_.set_state(ServiceState::ready);
+    return true;
 }
 
 /// Of an epoch to come only an attitude measured at its start counts: what the configuration states was true once.
@@ -155,10 +157,13 @@ void AttitudeIntegrator::on_verdict(const FaultVerdict& verdict)
 {
     if (verdict.unit != settings_.process.node.unit || verdict.detector != settings_.detector) return;
     if (verdict_ && identity_of(verdict) <= identity_of(*verdict_)) return;
+    const auto arrived_ns = node_.stamp();
     verdict_ = verdict;
     if (!integrator_) return;
     integrator_->apply(verdict);
     if (pending_ && identity_of(verdict) >= *pending_) {
+        // What it waited for came last: from here on it works.
+        stamps_[static_cast<std::size_t>(Hop::integrator_in)] = arrived_ns;
         stamps_[static_cast<std::size_t>(Hop::detector_in)] = verdict.stamp_ns[static_cast<std::size_t>(Hop::detector_in)];
         stamps_[static_cast<std::size_t>(Hop::detector_out)] = verdict.stamp_ns[static_cast<std::size_t>(Hop::detector_out)];
         publish_pending();

@@ -29,7 +29,7 @@ private:
     void rejoin(const VotedAttitude& voted);
     void publish_pending();
     void tell_changes(const AttitudeState& attitude);
-    void look_at_readiness();
+    bool look_at_readiness();  ///< @returns whether that is over
 
     system::IntegratorProcess settings_;
     runtime::Node node_;

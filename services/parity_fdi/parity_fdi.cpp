@@ -47,15 +47,18 @@ ParityFdi::ParityFdi(const system::DetectorProcess& settings, bus::Bus& bus, run
     frames_ = &loop.on(bus.subscribe(bus::topics::frame), [this](const SensorFrame& frame) { on_frame(frame); });
     node_.watch(
         bus::topics::frame.spec.name, [this] { return frames_->status(); }, true);
-    loop.every(readiness_period_ns, [this] { look_at_readiness(); });
+    loop.until(readiness_period_ns, [this] { return look_at_readiness(); });
 }
 
-void ParityFdi::look_at_readiness()
+bool ParityFdi::look_at_readiness()
 {
-    if (node_.state() != ServiceState::starting || !intake_.described() || frames_->status().matched == 0) return;
+    if (node_.state() != ServiceState::starting) return true;
+    if (!intake_.described() || frames_->status().matched == 0) return false;
     // A vessel has no integrator that surely reads its verdicts; a monitor that does is waited for.
     const bool has_waited = settings_.observers && ++unheard_looks_ > most_unheard_looks;
-    if (verdicts_.status().matched > 0 || has_waited) node_.set_state(ServiceState::ready);
+    if (verdicts_.status().matched == 0 && !has_waited) return false;
+    node_.set_state(ServiceState::ready);
+    return true;
 }
 
 void ParityFdi::on_frame(const SensorFrame& frame)

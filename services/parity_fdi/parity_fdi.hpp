@@ -42,7 +42,7 @@ private:
     void remember(std::uint64_t epoch, const std::array<std::uint64_t, max_axes>& excluded_from, Memory& memory);
     void adopt_memories();
     void adopt_missed(const VotedAttitude& voted);
-    void look_at_readiness();
+    bool look_at_readiness();  ///< @returns whether that is over
 
     system::DetectorProcess settings_;
     runtime::Node node_;

@@ -50,15 +50,17 @@ VoterService::VoterService(const system::VoterProcess& settings, bus::Bus& bus, 
     loop.every(static_cast<std::int64_t>(settings.voting.lease_s / 4 * 1e9), [this] {
         if (brain_.may_own()) voted_.assert_liveliness();
     });
-    loop.every(readiness_period_ns, [this] { look_at_readiness(); });
+    loop.until(readiness_period_ns, [this] { return look_at_readiness(); });
     if (settings.ros2) ros2_.emplace(*settings.ros2, settings.voting, bus, loop);
     drain();
 }
 
-void VoterService::look_at_readiness()
+bool VoterService::look_at_readiness()
 {
-    if (node_.state() == ServiceState::starting && attitudes_->status().matched >= settings_.voting.lanes.size())
-        node_.set_state(ServiceState::ready);
+    if (node_.state() != ServiceState::starting) return true;
+    if (attitudes_->status().matched < settings_.voting.lanes.size()) return false;
+    node_.set_state(ServiceState::ready);
+    return true;
 }
 
 void VoterService::drain()

@@ -17,7 +17,7 @@ public:
 private:
     void drain();
     void stamp(VotedAttitude& output);
-    void look_at_readiness();
+    bool look_at_readiness();  ///< @returns whether that is over
     void copy_counters();
 
     system::VoterProcess settings_;

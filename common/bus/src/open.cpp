@@ -2,7 +2,6 @@
 #include "quorient/bus/cyclonedds_bus.hpp"
 #include "quorient/bus/fastdds_bus.hpp"
 #include "quorient/bus/local_bus.hpp"
-#include "quorient/bus/roudi.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,10 +11,6 @@ namespace quorient::bus {
 tl::expected<std::unique_ptr<Bus>, std::string> open(const Settings& settings)
 {
     if (const auto found = problems(settings); !found.empty()) return tl::make_unexpected(fmt::format("{}", fmt::join(found, "\n")));
-    if (settings.transport == Transport::iceoryx && settings.shared_memory == SharedMemory::required && !roudi_answers())
-        return tl::make_unexpected(
-            std::string{"iceoryx's daemon iox-roudi does not answer: start it (quorient launch does), or use transport udp, or "
-                        "shared_memory: preferred"});
     switch (settings.vendor) {
         case Vendor::local:
             return LocalHub{}.open();

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -18,6 +19,15 @@ constexpr std::array transports{std::pair{Transport::udp, "udp"}, std::pair{Tran
 
 constexpr std::array shared_memory_words{std::pair{SharedMemory::required, "required"}, std::pair{SharedMemory::preferred, "preferred"},
                                          std::pair{SharedMemory::off, "off"}};
+
+constexpr double loopback_ratio = 8;
+constexpr double longest_loopback_s = 0.1;  // a sample lost to a full buffer, at the end of a stream
+
+bool is_loopback(std::string_view interface)
+{
+    const auto addresses = addresses_of(interface);
+    return !addresses.empty() && std::ranges::all_of(addresses, [](const std::string& address) { return address.starts_with("127."); });
+}
 
 /// Above this domain the RTPS ports leave the range of UDP [RTPS 9.6.1.1].
 constexpr std::uint32_t highest_domain = 230;
@@ -62,6 +72,12 @@ std::string_view to_string(Transport transport)
         if (known == transport) return name;
     }
     return "unknown";
+}
+
+double heartbeat_s(const Settings& settings)
+{
+    if (!is_loopback(settings.interface)) return settings.heartbeat_s;
+    return std::clamp(loopback_ratio * settings.heartbeat_s, settings.heartbeat_s, std::max(settings.heartbeat_s, longest_loopback_s));
 }
 
 std::vector<std::string> problems(const Settings& settings)

@@ -25,6 +25,20 @@ TEST(BusSettings, refuse_an_unknown_vendor_by_name)
     EXPECT_EQ(vendor_from("fastdds"), Vendor::fastdds);
 }
 
+TEST(BusSettings, ask_for_acknowledgements_more_rarely_on_loopback_than_on_a_network)
+{
+    Settings settings;
+    settings.heartbeat_s = 0.0025;
+    settings.interface = "";
+    EXPECT_DOUBLE_EQ(heartbeat_s(settings), 0.0025);
+    settings.interface = "lo";
+    EXPECT_DOUBLE_EQ(heartbeat_s(settings), 0.02);
+    settings.heartbeat_s = 0.05;
+    EXPECT_DOUBLE_EQ(heartbeat_s(settings), 0.1);
+    settings.heartbeat_s = 0.5;
+    EXPECT_DOUBLE_EQ(heartbeat_s(settings), 0.5);
+}
+
 TEST(BusSettings, on_loopback_have_no_problem)
 {
     EXPECT_THAT(problems(Settings{}), IsEmpty());

@@ -23,10 +23,21 @@ void EventLoop::every(std::int64_t period_ns, std::function<void()> handler)
     repeating.set(clock_.steady_ns() + period_ns);
 }
 
+void EventLoop::until(std::int64_t period_ns, std::function<bool()> handler)
+{
+    auto& repeating = timers_.emplace_back([] {});
+    repeating.handler_ = [this, &repeating, period_ns, handler = std::move(handler)] {
+        if (!handler()) repeating.set(clock_.steady_ns() + period_ns);
+    };
+    repeating.set(clock_.steady_ns() + period_ns);
+}
+
 int EventLoop::run()
 {
     while (!quit_ && !stop_.load(std::memory_order_relaxed)) {
-        if (!dispatch() && !work()) wait();
+        // What comes while it is handled ends the wait at once: no second look at every input, which would cost each sample as much again.
+        dispatch();
+        if (!work()) wait();
     }
     return exit_code_;
 }

@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr std::int64_t status_period_ns = second_ns / 2;
+/// Nobody asks more often whether frames are fresh, and each beat is a system call.
+constexpr std::int64_t heartbeat_period_ns = 20'000'000;
 constexpr std::int64_t match_patience_ns = 5 * second_ns;
 
 spdlog::level::level_enum level_of(Severity severity)
@@ -113,7 +115,10 @@ void Node::handled(Identity identity, std::int64_t arrival_ns)
     status_.sequence = identity.sequence;
     ++status_.received;
     latency_ns_[latency_count_++ % latency_ns_.size()] = now - arrival_ns;
-    if (heartbeat_) heartbeat_->beat(now, status_.received);
+    if (heartbeat_ && now - beat_ns_ >= heartbeat_period_ns) {
+        heartbeat_->beat(now, status_.received);
+        beat_ns_ = now;
+    }
     if (service_manager_) service_manager_->frame_handled(now);
 }
 
@@ -137,6 +142,12 @@ void Node::look_at_endpoints()
             report(EventCode::transport_fallback, Severity::warning_high, none, 0,
                    fmt::format("{} goes by {}: {} was asked for and is not available", endpoint.what, bus::to_string(now.transport),
                                bus::to_string(now.asked)));
+        }
+        if (now.refused > endpoint.refused) {
+            endpoint.refused = now.refused;
+            report(EventCode::shared_memory_lost, Severity::warning_high, {status_.epoch, status_.sequence}, 0,
+                   fmt::format("{}: {} samples not sent in all: {} has no room (iceoryx: more chunks in roudi.toml)", endpoint.what,
+                               now.refused, bus::to_string(now.transport)));
         }
         if (now.matched > 0) endpoint.must_match = false;
         if (endpoint.must_match && !endpoint.told_unmatched && clock().steady_ns() - started_ns_ > match_patience_ns) {

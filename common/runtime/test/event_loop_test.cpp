@@ -69,6 +69,17 @@ TEST_F(Loop, skips_what_a_repeating_timer_missed)
     EXPECT_EQ(loop.next_deadline_ns(), 105);
 }
 
+TEST_F(Loop, repeats_a_timer_until_its_handler_is_content)
+{
+    int fired = 0;
+    loop.until(10, [&] { return ++fired == 2; });
+    for (const std::int64_t now : {10, 20, 30, 40}) {
+        clock.set(now);
+        loop.dispatch();
+    }
+    EXPECT_EQ(fired, 2);
+}
+
 TEST_F(Loop, lets_a_handler_set_its_own_timer_again)
 {
     int fired = 0;

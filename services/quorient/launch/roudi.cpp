@@ -3,6 +3,7 @@
 #include "quorient/bus/roudi.hpp"
 #include "quorient/runtime/heartbeat.hpp"
 
+#include <fmt/format.h>
 #include <chrono>
 #include <fstream>
 #include <thread>
@@ -29,23 +30,32 @@ std::size_t iceoryx_processes(const system::System& system)
 
 }  // namespace
 
-bool Roudi::start(const system::System& system, Processes& processes)
+std::string Roudi::start(const system::System& system, Processes& processes)
 {
     const auto participants = iceoryx_processes(system);
-    if (participants == 0) return true;
-    if (!bus::roudi_answers()) {
+    if (participants == 0) return {};
+    const auto endpoints = participants * endpoints_each;
+    const auto refusal = bus::roudi_silence();
+    if (!refusal.empty()) {
+        const auto needed = bus::roudi_memory(endpoints, endpoints);
+        if (bus::free_shared_memory() < needed)
+            return fmt::format(
+                "iceoryx's daemon needs {} MiB in /dev/shm, {} MiB are free: quorient clean removes what killed processes left",
+                needed >> 20, bus::free_shared_memory() >> 20);
         const auto configuration = runtime::run_directory() / "roudi.toml";
-        std::ofstream{configuration} << bus::roudi_configuration(participants * endpoints_each, participants * endpoints_each);
+        std::ofstream{configuration} << bus::roudi_configuration(endpoints, endpoints);
         processes.add("roudi", {"/usr/bin/iox-roudi", "-c", configuration.string()}, (runtime::run_directory() / "roudi.log").string(),
                       true);
         processes.start();
     }
     const auto deadline = std::chrono::steady_clock::now() + patience;
     while ((life_ = bus::roudi_life()) == 0) {
-        if (std::chrono::steady_clock::now() > deadline) return false;
+        if (std::chrono::steady_clock::now() > deadline)
+            return fmt::format("within {} s: {}; the log of the one started here: {}", patience.count(), bus::roudi_silence(),
+                               (runtime::run_directory() / "roudi.log").string());
         std::this_thread::sleep_for(std::chrono::milliseconds{10});
     }
-    return true;
+    return {};
 }
 
 bool Roudi::lost()

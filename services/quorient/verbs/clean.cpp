@@ -11,6 +11,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace quorient::cli {
@@ -34,14 +35,24 @@ public:
     /// @returns "name (id)" of a process that uses the file; empty where none does.
     std::string owner(const fs::path& file) const
     {
-        // A socket has no path among the open files; its lock beside it has.
-        for (const auto& path : {file.string(), file.string() + ".lock"}) {
+        // A socket has no path among the open files; its lock beside it has. Fast DDS opens a port's semaphore for moments, the port for
+        // good.
+        for (const auto& path : {file.string(), file.string() + ".lock", guarded_by(file)}) {
             if (const auto found = owners_.find(path); found != owners_.end()) return found->second;
         }
         return {};
     }
 
 private:
+    /// "/dev/shm/sem.fastrtps_port7410_mutex" guards "/dev/shm/fastrtps_port7410".
+    static std::string guarded_by(const fs::path& semaphore)
+    {
+        constexpr std::string_view prefix = "sem.", suffix = "_mutex";
+        const auto name = semaphore.filename().string();
+        if (!name.starts_with(prefix) || !name.ends_with(suffix)) return semaphore.string();
+        return semaphore.parent_path() / name.substr(prefix.size(), name.size() - prefix.size() - suffix.size());
+    }
+
     void look(const fs::path& process)
     {
         std::string name;
@@ -103,8 +114,10 @@ std::set<fs::path> leftovers()
         },
         found);
     collect(
-        runtime::run_directory(), [](const std::string& name) { return name.ends_with(".heartbeat") || name == "roudi.toml"; }, found);
+        runtime::run_directory(), [](const std::string& name) { return name.ends_with(".heartbeat"); }, found);
     if (bus::roudi_answers()) return found;  // its files and its clients' are in use
+    collect(
+        runtime::run_directory(), [](const std::string& name) { return name == "roudi.toml"; }, found);
     collect(
         "/dev/shm", [](const std::string& name) { return name == "iceoryx_mgmt"; }, found);
     if (found.contains("/dev/shm/iceoryx_mgmt")) {

@@ -87,14 +87,14 @@ public:
         loop_.on(bus.subscribe(bus::topics::voter_output), [this](const VotedAttitude& m) { observer_.on_voted(m); });
         loop_.on(bus.subscribe(bus::topics::event), [this](const HealthEvent& m) { screen_.on_event(m); });
         prepare_run_directory();
-        roudi_answers_ = roudi_.start(system, processes_);
+        roudi_problem_ = roudi_.start(system, processes_);
         add_processes(system, options.system, processes_);
     }
 
     int run()
     {
-        if (!roudi_answers_) {
-            fmt::print(stderr, "iox-roudi does not answer within 5 s; its log: {}\n", (runtime::run_directory() / "roudi.log").string());
+        if (!roudi_problem_.empty()) {
+            fmt::print(stderr, "{}\n", roudi_problem_);
             return 1;
         }
         processes_.start();
@@ -151,7 +151,7 @@ private:
     runtime::EventLoop loop_;
     launch::Processes processes_;
     launch::Roudi roudi_;
-    bool roudi_answers_ = true;
+    std::string roudi_problem_;
     bool failed_ = false;
 };
 

@@ -1,5 +1,6 @@
 #include "quorient/bus/cyclonedds_bus.hpp"
 
+#include "quorient/bus/iceoryx_guard.hpp"
 #include "quorient/bus/roudi.hpp"
 #include "ros2.hpp"
 #include "types.hpp"
@@ -104,6 +105,18 @@ Transport transport_of(dds_entity_t endpoint)
     return dds_is_shared_memory_available(endpoint) ? Transport::iceoryx : Transport::udp;
 }
 
+/// A pool that is too small is told at the start, not by the first sample that is lost.
+void check_room(dds_entity_t writer, const TopicSpec& topic)
+{
+    void* sample = nullptr;
+    if (dds_loan_sample(writer, &sample) != DDS_RETCODE_OK)
+        throw Error(fmt::format(
+            "iceoryx's daemon has no free chunk for {}: its configuration needs a pool with size = {} ([[segment.mempool]]) and "
+            "enough of them for all readers' histories, as quorient launch writes it to roudi.toml in the run directory",
+            topic.name, chunk_size(topic.size)));
+    dds_return_loan(writer, &sample, 1);
+}
+
 /// What the settings ask for on this topic: latched ones stay off iceoryx by design, owned ones by their liveliness.
 Transport asked_for(const TopicSpec& topic, Transport asked)
 {
@@ -119,12 +132,9 @@ public:
 
     bool write(const void* message) override
     {
-        if (cyclonedds::is_ros2(type_)) return cyclonedds::write_ros2(type_, writer_.handle(), message);
-        if (!loans_) return dds_write(writer_.handle(), message) == DDS_RETCODE_OK;
-        void* sample = nullptr;
-        if (dds_loan_sample(writer_.handle(), &sample) != DDS_RETCODE_OK) return false;
-        std::memcpy(sample, message, size_);
-        return dds_write(writer_.handle(), sample) == DDS_RETCODE_OK;
+        const bool taken = cyclonedds::is_ros2(type_) ? cyclonedds::write_ros2(type_, writer_.handle(), message) : write_plain(message);
+        if (!taken) ++refused_;
+        return taken;
     }
 
     void assert_liveliness() override { dds_assert_liveliness(writer_.handle()); }
@@ -135,16 +145,39 @@ public:
         dds_offered_incompatible_qos_status_t incompatible{};
         dds_get_publication_matched_status(writer_.handle(), &matched);
         dds_get_offered_incompatible_qos_status(writer_.handle(), &incompatible);
-        return {matched.current_count, incompatible.total_count, policy_name(incompatible.last_policy_id), transport_of(writer_.handle()),
-                asked_};
+        return {matched.current_count,
+                incompatible.total_count,
+                policy_name(incompatible.last_policy_id),
+                transport_of(writer_.handle()),
+                asked_,
+                refused_};
     }
 
 private:
+    /// Of a topic that nobody reads Cyclone DDS forgets the instance after each sample, and a thread of its own has that to clear away.
+    bool keep_instance_of(const void* message)
+    {
+        dds_instance_handle_t kept = 0;
+        return dds_register_instance(writer_.handle(), &kept, message) == DDS_RETCODE_OK;
+    }
+
+    bool write_plain(const void* message)
+    {
+        if (!registered_) registered_ = keep_instance_of(message);
+        if (!loans_) return dds_write(writer_.handle(), message) == DDS_RETCODE_OK;
+        void* sample = nullptr;
+        if (dds_loan_sample(writer_.handle(), &sample) != DDS_RETCODE_OK) return false;
+        std::memcpy(sample, message, size_);
+        return dds_write(writer_.handle(), sample) == DDS_RETCODE_OK;
+    }
+
     Entity writer_;
     TypeId type_;
     std::size_t size_;
     Transport asked_;
     bool loans_;
+    bool registered_ = false;
+    std::uint64_t refused_ = 0;
 };
 
 class CycloneReader final : public Reader {
@@ -204,8 +237,9 @@ private:
     {
         const auto asked = asked_for(topic, asked_);
         const auto qos = to_qos(topic.qos, &options, asked);
-        return std::make_unique<CycloneWriter>(
-            checked(dds_create_writer(participant_.handle(), topic_of(topic), qos.get(), nullptr), topic.name), topic, asked);
+        auto writer = checked(dds_create_writer(participant_.handle(), topic_of(topic), qos.get(), nullptr), topic.name);
+        if (dds_is_loan_available(writer.handle())) check_room(writer.handle(), topic);
+        return std::make_unique<CycloneWriter>(std::move(writer), topic, asked);
     }
 
     std::unique_ptr<Reader> make_reader(const TopicSpec& topic) override
@@ -236,6 +270,9 @@ private:
     std::map<std::string, dds_entity_t> topics_;
 };
 
+/// Of one host and domain, by RTPS's ports [RTPS 9.6.1.1]. Unicast discovery knocks at each of them, so it looks for fewer.
+constexpr std::uint32_t most_participants = 119;
+
 /// As Cyclone wants it. GenerateKeyhash: without it Fast DDS does not see a Cyclone endpoint leave. The short heartbeat and
 /// nack delays repair a lost sample before anybody's patience ends.
 std::string configuration(const Settings& settings, bool shared)
@@ -256,14 +293,21 @@ std::string configuration(const Settings& settings, bool shared)
         "<HeartbeatInterval min=\"1ms\" minsched=\"2ms\" max=\"100ms\">{}us</HeartbeatInterval></Internal>"
         "<SharedMemory><Enable>{}</Enable><LogLevel>warn</LogLevel></SharedMemory></Domain></CycloneDDS>",
         interface, !unicast, unicast ? fmt::format("<Peers>{}</Peers>", peers) : std::string{},
-        unicast ? settings.participants_per_host - 1 : 60, static_cast<long>(settings.heartbeat_s * 1e6), shared);
+        unicast ? settings.participants_per_host - 1 : most_participants, static_cast<long>(heartbeat_s(settings) * 1e6), shared);
 }
 
 }  // namespace
 
 tl::expected<std::unique_ptr<Bus>, std::string> open_cyclonedds(const Settings& settings)
 {
-    const bool shared = settings.transport == Transport::iceoryx && settings.shared_memory != SharedMemory::off && roudi_answers();
+    bool shared = settings.transport == Transport::iceoryx && settings.shared_memory != SharedMemory::off;
+    if (shared) {
+        auto refusal = roudi_silence();
+        if (refusal.empty()) refusal = iceoryx_refusal();
+        if (!refusal.empty() && settings.shared_memory == SharedMemory::required) return tl::make_unexpected(refusal);
+        shared = refusal.empty();
+    }
+    if (shared) survive_full_pools();
     // A second bus of this process in the same domain shares the first one's domain and its configuration.
     const auto domain = dds_create_domain(settings.domain, configuration(settings, shared).c_str());
     if (domain < 0 && domain != DDS_RETCODE_PRECONDITION_NOT_MET)

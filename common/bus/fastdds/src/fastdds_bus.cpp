@@ -2,6 +2,7 @@
 
 #include "guarded_transport.hpp"
 #include "quorient/bus/interfaces.hpp"
+#include "quorient/bus/roudi.hpp"
 #include "ros2.hpp"
 #include "types.hpp"
 
@@ -57,6 +58,9 @@ std::string_view policy_name(dds::QosPolicyId_t id)
     }
 }
 
+/// Of one participant: its segment of 512 KiB, its ports, and theirs whom it writes to; generously.
+constexpr std::uintmax_t shared_memory_needed = 4 << 20;
+
 bool shares_memory(const Settings& settings)
 {
     return settings.transport == Transport::shared_memory && settings.shared_memory != SharedMemory::off;
@@ -78,19 +82,33 @@ void apply(const Qos& qos, const Settings& settings, EndpointQos& endpoint)
     if (!shares_memory(settings)) endpoint.data_sharing().off();
 }
 
-/// Whether Fast DDS really opened its shared memory: it goes on by UDP, and says nothing, where it could not.
-Transport transport_of(const rtps::LocatorList& locators)
+/// Whether Fast DDS really opened its shared memory: it goes on by UDP, and says nothing, where it could not. Only a reader can be asked:
+/// a writer's list of sending locators leaves shared memory out.
+Transport transport_of(const dds::DataReader& reader)
 {
+    rtps::LocatorList locators;
+    reader.get_listening_locators(locators);
     for (auto locator = locators.begin(); locator != locators.end(); ++locator) {
         if (locator->kind == LOCATOR_KIND_SHM) return Transport::shared_memory;
     }
     return Transport::udp;
 }
 
+/// Of all endpoints of a participant alike.
+struct Transports {
+    Transport in_use;
+    Transport asked;
+};
+
 class FastWriter final : public Writer {
 public:
-    FastWriter(dds::Publisher* publisher, dds::DataWriter* writer, dds::TypeSupport type, const TopicSpec& topic, Transport asked)
-        : publisher_(publisher), writer_(writer), type_(std::move(type)), sample_(type_.create_data()), topic_(topic), asked_(asked)
+    FastWriter(dds::Publisher* publisher, dds::DataWriter* writer, dds::TypeSupport type, const TopicSpec& topic, Transports transports)
+        : publisher_(publisher),
+          writer_(writer),
+          type_(std::move(type)),
+          sample_(type_.create_data()),
+          topic_(topic),
+          transports_(transports)
     {
     }
     ~FastWriter() override
@@ -103,7 +121,9 @@ public:
     {
         if (fastdds::is_ros2(topic_.type)) fastdds::ros2_to_vendor(topic_.type, message, sample_);
         else std::memcpy(sample_, message, topic_.size);
-        return writer_->write(sample_);
+        const bool taken = writer_->write(sample_);
+        if (!taken) ++refused_;
+        return taken;
     }
 
     void assert_liveliness() override { writer_->assert_liveliness(); }
@@ -114,10 +134,12 @@ public:
         dds::OfferedIncompatibleQosStatus incompatible;
         writer_->get_publication_matched_status(matched);
         writer_->get_offered_incompatible_qos_status(incompatible);
-        rtps::LocatorList locators;
-        writer_->get_sending_locators(locators);
-        return {static_cast<std::uint32_t>(matched.current_count), incompatible.total_count, policy_name(incompatible.last_policy_id),
-                transport_of(locators), asked_};
+        return {static_cast<std::uint32_t>(matched.current_count),
+                incompatible.total_count,
+                policy_name(incompatible.last_policy_id),
+                transports_.in_use,
+                transports_.asked,
+                refused_};
     }
 
 private:
@@ -126,20 +148,21 @@ private:
     dds::TypeSupport type_;
     void* sample_;
     TopicSpec topic_;
-    Transport asked_;
+    Transports transports_;
+    std::uint64_t refused_ = 0;
 };
 
 class FastReader final : public Reader {
 public:
     FastReader(dds::Subscriber* subscriber, dds::DataReader* reader, dds::WaitSet& waitset, dds::TypeSupport type, const TopicSpec& topic,
-               Transport asked)
+               Transports transports)
         : subscriber_(subscriber),
           reader_(reader),
           waitset_(waitset),
           type_(std::move(type)),
           sample_(type_.create_data()),
           topic_(topic),
-          asked_(asked)
+          transports_(transports)
     {
         reader_->get_statuscondition().set_enabled_statuses(dds::StatusMask::data_available());
         waitset_.attach_condition(reader_->get_statuscondition());
@@ -169,10 +192,8 @@ public:
         dds::RequestedIncompatibleQosStatus incompatible;
         reader_->get_subscription_matched_status(matched);
         reader_->get_requested_incompatible_qos_status(incompatible);
-        rtps::LocatorList locators;
-        reader_->get_listening_locators(locators);
         return {static_cast<std::uint32_t>(matched.current_count), incompatible.total_count, policy_name(incompatible.last_policy_id),
-                transport_of(locators), asked_};
+                transports_.in_use, transports_.asked};
     }
 
 private:
@@ -182,7 +203,7 @@ private:
     dds::TypeSupport type_;
     void* sample_;
     TopicSpec topic_;
-    Transport asked_;
+    Transports transports_;
 };
 
 class FastBus final : public Bus {
@@ -191,8 +212,10 @@ public:
         : settings_(settings),
           participant_(participant),
           publisher_(participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT)),
-          subscriber_(participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT))
+          subscriber_(participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT)),
+          transports_{Transport::udp, settings.transport}
     {
+        if (shares_memory(settings)) transports_.in_use = transport_in_use();
     }
     ~FastBus() override
     {
@@ -208,14 +231,27 @@ public:
 
     Vendor vendor() const override { return Vendor::fastdds; }
 
+    Transport transport() const { return transports_.in_use; }
+
 private:
+    /// As a reader made for this question knows it.
+    Transport transport_in_use()
+    {
+        auto [type, entity] = topic_of(topics::status.spec);
+        auto* reader = subscriber_->create_datareader(entity, dds::DATAREADER_QOS_DEFAULT);
+        if (!reader) return Transport::udp;
+        const auto found = transport_of(*reader);
+        subscriber_->delete_datareader(reader);
+        return found;
+    }
+
     std::unique_ptr<Writer> make_writer(const TopicSpec& topic, const WriterOptions& options) override
     {
         dds::DataWriterQos qos = publisher_->get_default_datawriter_qos();
         apply(topic.qos, settings_, qos);
         qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
         // The default heartbeat of 3 s leaves a Cyclone reader that matched late without its history.
-        qos.reliable_writer_qos().times.heartbeatPeriod = seconds(settings_.heartbeat_s);
+        qos.reliable_writer_qos().times.heartbeatPeriod = seconds(heartbeat_s(settings_));
         qos.reliable_writer_qos().times.nackResponseDelay = seconds(0);
         qos.reliable_writer_qos().times.initialHeartbeatDelay = seconds(0);
         if (topic.qos.exclusive) {
@@ -227,7 +263,7 @@ private:
         auto [type, entity] = topic_of(topic);
         auto* writer = publisher_->create_datawriter(entity, qos);
         if (!writer) throw Error(fmt::format("Fast DDS: cannot write {}", topic.name));
-        return std::make_unique<FastWriter>(publisher_, writer, type, topic, settings_.transport);
+        return std::make_unique<FastWriter>(publisher_, writer, type, topic, transports_);
     }
 
     std::unique_ptr<Reader> make_reader(const TopicSpec& topic) override
@@ -243,7 +279,7 @@ private:
         auto [type, entity] = topic_of(topic);
         auto* reader = subscriber_->create_datareader(entity, qos);
         if (!reader) throw Error(fmt::format("Fast DDS: cannot read {}", topic.name));
-        return std::make_unique<FastReader>(subscriber_, reader, waitset_, type, topic, settings_.transport);
+        return std::make_unique<FastReader>(subscriber_, reader, waitset_, type, topic, transports_);
     }
 
     std::pair<dds::TypeSupport, dds::Topic*> topic_of(const TopicSpec& spec)
@@ -265,6 +301,7 @@ private:
     dds::WaitSet waitset_;
     dds::ConditionSeq triggered_;
     std::map<std::string, dds::Topic*> topics_;
+    Transports transports_;
 };
 
 /// The default port mapping [RTPS 9.6.1.1]: discovery of participant p at 7400 + 250 domain + 10 + 2 p, data one above. Where to look for
@@ -301,19 +338,40 @@ void announce_in_order(dds::WireProtocolConfigQos& wire)
     }
 }
 
+/// Linux's own default. It must be stated: behind another transport Fast DDS 2.9.1 takes what is not stated for 0, holds the buffer for
+/// full after every sample, and asks each reader to acknowledge it.
+constexpr std::uint32_t send_buffer = 212'992;
+
 void add_transports(const Settings& settings, dds::TransportConfigQos& transports)
 {
     transports.use_builtin_transports = false;
     const auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
+    udp->sendBufferSize = send_buffer;
     if (!settings.interface.empty()) udp->interfaceWhiteList = addresses_of(settings.interface);
     transports.user_transports.push_back(fastdds::guarded(udp));
     if (shares_memory(settings)) transports.user_transports.push_back(std::make_shared<rtps::SharedMemTransportDescriptor>());
 }
 
+/// Without room Fast DDS would be ended by SIGBUS at its first sample.
+tl::expected<Settings, std::string> with_room_in_shared_memory(Settings settings)
+{
+    if (!shares_memory(settings) || free_shared_memory() >= shared_memory_needed) return settings;
+    if (settings.shared_memory == SharedMemory::required)
+        return tl::make_unexpected(
+            fmt::format("Fast DDS needs {} MiB in /dev/shm, {:.1f} MiB are free: quorient clean removes what killed "
+                        "processes left; or use transport udp, or shared_memory: preferred",
+                        shared_memory_needed >> 20, static_cast<double>(free_shared_memory()) / (1 << 20)));
+    settings.shared_memory = SharedMemory::off;
+    return settings;
+}
+
 }  // namespace
 
-tl::expected<std::unique_ptr<Bus>, std::string> open_fastdds(const Settings& settings)
+tl::expected<std::unique_ptr<Bus>, std::string> open_fastdds(const Settings& asked)
 {
+    const auto checked = with_room_in_shared_memory(asked);
+    if (!checked) return tl::make_unexpected(checked.error());
+    const auto& settings = *checked;
     dds::Log::SetVerbosity(dds::Log::Error);
     dds::DomainParticipantQos qos;
     qos.name(settings.participant);
@@ -333,7 +391,12 @@ tl::expected<std::unique_ptr<Bus>, std::string> open_fastdds(const Settings& set
 
     auto* participant = dds::DomainParticipantFactory::get_instance()->create_participant(settings.domain, qos);
     if (!participant) return tl::make_unexpected(fmt::format("Fast DDS: cannot join domain {}", settings.domain));
-    return std::make_unique<FastBus>(settings, participant);
+    auto bus = std::make_unique<FastBus>(settings, participant);
+    if (shares_memory(settings) && settings.shared_memory == SharedMemory::required && bus->transport() == Transport::udp)
+        return tl::make_unexpected(std::string{
+            "Fast DDS cannot open its shared memory in /dev/shm (read-only, or of another user?): mend that, or use transport udp, "
+            "or shared_memory: preferred"});
+    return bus;
 }
 
 }  // namespace quorient::bus

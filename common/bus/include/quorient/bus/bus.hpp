@@ -25,6 +25,7 @@ struct EndpointStatus {
     std::string_view policy{};                 ///< name of the policy of the latest of them
     Transport transport = Transport::unknown;  ///< really in use at this end; a peer without it is served by UDP
     Transport asked = Transport::unknown;      ///< by the settings, for a topic like this one
+    std::uint64_t refused = 0;                 ///< samples that the vendor did not take from us, in total
 };
 
 /// What a vendor implements. One thread uses a bus and all that it made.

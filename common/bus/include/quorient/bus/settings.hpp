@@ -26,7 +26,7 @@ struct Settings {
     Transport transport = Transport::udp;  ///< udp, shared_memory (Fast DDS) or iceoryx (Cyclone DDS)
     SharedMemory shared_memory = SharedMemory::required;
     std::string participant;      ///< name shown to other tools
-    double heartbeat_s = 0.0025;  ///< of reliable writers: at most half a frame interval
+    double heartbeat_s = 0.0025;  ///< of reliable writers on a network: at most half a frame interval
     double voted_lease_s = 0.05;  ///< that a reader of `voted` asks for: at least the writers'
     bool security = false;        ///< DDS Security asked for; refused together with shared memory
     /// That a peer's address may have, ours among them: each is announced to once a second, so many addresses want a small number.
@@ -39,6 +39,11 @@ tl::expected<Transport, std::string> transport_from(std::string_view word);
 tl::expected<SharedMemory, std::string> shared_memory_from(std::string_view word);
 std::string_view to_string(Vendor vendor);
 std::string_view to_string(Transport transport);
+
+/// How often a reliable writer asks its readers what they lack. On a network as the settings say, so that a lost sample is repaired before
+/// anybody's patience ends; every sample is then acknowledged by every reader. Loopback loses nothing but to a full socket buffer, and
+/// there the acknowledgements would cost more than the samples: eight times as rarely.
+double heartbeat_s(const Settings& settings);
 
 /// Everything that can be told wrong before a participant exists: domain above 230, no such interface, a peer that is no address,
 /// a transport that the vendor does not have, shared memory together with security.

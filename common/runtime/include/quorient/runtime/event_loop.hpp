@@ -46,7 +46,10 @@ public:
     /// A timer that sets itself again. The first call comes after one period.
     void every(std::int64_t period_ns, std::function<void()> handler);
 
-    /// Called when nothing else is to be done, for as long as it returns true; must be short.
+    /// As every(), until the handler returns true.
+    void until(std::int64_t period_ns, std::function<bool()> handler);
+
+    /// Called when all that is there has been handled, for as long as it returns true; must be short.
     void when_idle(std::function<bool()> work) { idle_.push_back(std::move(work)); }
 
     /// Spins instead of blocking: a core for a little latency.

@@ -72,6 +72,7 @@ private:
         std::function<bus::EndpointStatus()> status;
         bool must_match;  ///< and has not yet
         std::uint32_t incompatible = 0;
+        std::uint64_t refused = 0;
         bool told_unmatched = false;
         bool told_fallback = false;
     };
@@ -86,6 +87,7 @@ private:
     bus::Publisher<HealthEvent> events_;
     bus::Publisher<ServiceStatus> statuses_;
     std::optional<Heartbeat> heartbeat_;
+    std::int64_t beat_ns_ = 0;
     std::optional<ServiceManager> service_manager_;
     ServiceStatus status_;
     std::uint64_t event_number_ = 0;

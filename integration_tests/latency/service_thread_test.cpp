@@ -1,4 +1,5 @@
-// What a frame's way through all services allocates on the service thread: our code nothing, the vendor's counted apart and printed.
+// What a frame's way through all services costs on the service thread: our code allocates, locks, logs and throws nothing; what the
+// vendor's calls and threads do is counted apart and printed.
 
 #include "attitude_integrator.hpp"
 #include "parity_fdi.hpp"
@@ -6,12 +7,18 @@
 #include "sensor_publisher.hpp"
 #include "voter.hpp"
 
+#include <dlfcn.h>
 #include <gtest/gtest.h>
+#include <pthread.h>
+#include <spdlog/sinks/base_sink.h>
+#include <spdlog/spdlog.h>
 #include <unistd.h>
+#include <array>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <new>
+#include <stdexcept>
 #include <utility>
 
 // NOLINTBEGIN: the C library's own names, so that its every caller in this process is counted
@@ -26,24 +33,37 @@ namespace {
 
 enum class Where { elsewhere, our_code, vendor_call };
 
-thread_local Where where = Where::elsewhere;
-std::atomic<std::uint64_t> ours{0};
-std::atomic<std::uint64_t> in_vendor_calls{0};
-std::atomic<std::uint64_t> on_vendor_threads{0};
+enum class What { allocation, lock, exception, log };
 
-void count()
+thread_local Where where = Where::elsewhere;
+
+using Counts = std::array<std::array<std::uint64_t, 4>, 3>;
+std::array<std::array<std::atomic<std::uint64_t>, 4>, 3> counters{};
+
+void count(What what)
 {
-    switch (where) {
-        case Where::our_code:
-            ours.fetch_add(1, std::memory_order_relaxed);
-            break;
-        case Where::vendor_call:
-            in_vendor_calls.fetch_add(1, std::memory_order_relaxed);
-            break;
-        case Where::elsewhere:
-            on_vendor_threads.fetch_add(1, std::memory_order_relaxed);
-            break;
+    counters[static_cast<std::size_t>(where)][static_cast<std::size_t>(what)].fetch_add(1, std::memory_order_relaxed);
+}
+
+std::uint64_t counted(Where here, What what)
+{
+    return counters[static_cast<std::size_t>(here)][static_cast<std::size_t>(what)].load(std::memory_order_relaxed);
+}
+
+Counts counted()
+{
+    Counts now{};
+    for (std::size_t here = 0; here < now.size(); ++here) {
+        for (std::size_t what = 0; what < now[here].size(); ++what)
+            now[here][what] = counted(static_cast<Where>(here), static_cast<What>(what));
     }
+    return now;
+}
+
+template <class Function>
+Function next(const char* name)
+{
+    return reinterpret_cast<Function>(::dlsym(RTLD_NEXT, name));
 }
 
 /// Marks a stretch of this thread.
@@ -62,18 +82,31 @@ private:
 
 extern "C" void* malloc(std::size_t size)
 {
-    count();
+    count(What::allocation);
     return __libc_malloc(size);
 }
 extern "C" void* calloc(std::size_t number, std::size_t size)
 {
-    count();
+    count(What::allocation);
     return __libc_calloc(number, size);
 }
 extern "C" void* realloc(void* memory, std::size_t size)
 {
-    count();
+    count(What::allocation);
     return __libc_realloc(memory, size);
+}
+extern "C" int pthread_mutex_lock(pthread_mutex_t* mutex)
+{
+    static const auto lock = next<int (*)(pthread_mutex_t*)>("pthread_mutex_lock");
+    count(What::lock);
+    return lock(mutex);
+}
+extern "C" [[noreturn]] void __cxa_throw(void* thrown, void* type, void (*destroy)(void*))
+{
+    static const auto raise = next<void (*)(void*, void*, void (*)(void*))>("__cxa_throw");
+    count(What::exception);
+    raise(thrown, type, destroy);
+    std::abort();
 }
 
 namespace quorient {
@@ -163,26 +196,32 @@ private:
     bus::Bus& bus_;
 };
 
+/// In the place of the log.
+class CountingSink final : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
+    void sink_it_(const spdlog::details::log_msg&) override { count(What::log); }
+    void flush_() override {}
+};
+
+void count_logs()
+{
+    spdlog::set_default_logger(std::make_shared<spdlog::logger>("counted", std::make_shared<CountingSink>()));
+}
+
 constexpr std::uint64_t warm_up_frames = 300;
 constexpr std::uint64_t counted_frames = 400;
 constexpr std::int64_t patience_ns = 30'000'000'000;
 
 class ServiceThread : public testing::TestWithParam<std::string> {};
 
-TEST_P(ServiceThread, allocates_nothing_per_frame_in_our_code)
+TEST_P(ServiceThread, allocates_locks_logs_and_throws_nothing_per_frame_in_our_code)
 {
+    count_logs();
+    ::setenv("QUORIENT_RUN_DIR", testing::TempDir().c_str(), 1);
     const auto domain = 100 + static_cast<std::uint32_t>(::getpid() % 100);
     auto system = system::load(QUORIENT_SOURCE_DIR "/deploy/configurations/demo.yaml",
                                {.dds = bus::vendor_from(GetParam()).value(), .domain = domain, .process = {}, .set = {"source.faults=[]"}});
     ASSERT_TRUE(system) << system.error();
-    const auto quiet = [](system::ProcessSettings& process) { process.node.heartbeat = process.node.log_events = false; };
-    quiet(system->sensor.process);
-    for (auto& lane : system->lanes) {
-        quiet(lane.detector.process);
-        quiet(lane.integrator.process);
-    }
     system->voters.resize(1);
-    quiet(system->voters.front().process);
     system->sensor.consumers = {"voter-1"};
 
     const auto vendor = bus::open(system->sensor.process.bus);
@@ -212,30 +251,42 @@ TEST_P(ServiceThread, allocates_nothing_per_frame_in_our_code)
         }
     };
     handle(warm_up_frames);
-    const auto ours_before = ours.load();
-    const auto vendor_before = in_vendor_calls.load();
-    const auto threads_before = on_vendor_threads.load();
+    const auto before = counted();
     handle(warm_up_frames + counted_frames);
 
-    ASSERT_GE(voted, warm_up_frames + counted_frames) << "the pipeline stood still";
-    EXPECT_EQ(ours.load() - ours_before, 0U);
-    const auto per_frame = [](std::uint64_t now, std::uint64_t before) { return static_cast<double>(now - before) / counted_frames; };
-    std::printf("%s: per frame of three lanes and a voter: 0 in our code wanted, %.1f in vendor calls, %.1f on vendor threads\n",
-                GetParam().c_str(), per_frame(in_vendor_calls, vendor_before), per_frame(on_vendor_threads, threads_before));
-    RecordProperty("allocations_per_frame_in_vendor_calls", std::to_string(per_frame(in_vendor_calls, vendor_before)));
-}
+    const auto after = counted();
 
-TEST_P(ServiceThread, would_count_an_allocation)
-{
-    const auto before = ours.load();
-    {
-        const At here{Where::our_code};
-        ::operator delete(::operator new(64));
+    ASSERT_GE(voted, warm_up_frames + counted_frames) << "the pipeline stood still";
+    for (const auto& [what, name] :
+         {std::pair{What::allocation, "allocations"}, {What::lock, "locks"}, {What::exception, "exceptions"}, {What::log, "log lines"}}) {
+        const auto per_frame = [&](Where here) {
+            const auto i = static_cast<std::size_t>(here), k = static_cast<std::size_t>(what);
+            return static_cast<double>(after[i][k] - before[i][k]) / counted_frames;
+        };
+        EXPECT_EQ(per_frame(Where::our_code), 0) << name << " per frame";
+        std::printf("%s, %s per frame of three lanes and a voter: %.2f in our code, %.1f in vendor calls, %.1f on vendor threads\n",
+                    GetParam().c_str(), name, per_frame(Where::our_code), per_frame(Where::vendor_call), per_frame(Where::elsewhere));
     }
-    EXPECT_EQ(ours.load() - before, 1U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Vendors, ServiceThread, testing::Values("cyclonedds", "fastdds"), [](const auto& vendor) { return vendor.param; });
+
+TEST(ServiceThreadCounters, would_see_an_allocation_a_lock_an_exception_and_a_log_line)
+{
+    count_logs();
+    const auto before = counted();
+    {
+        const At here{Where::our_code};
+        ::operator delete(::operator new(64));
+        pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
+        pthread_mutex_lock(&mutex);
+        pthread_mutex_unlock(&mutex);
+        EXPECT_THROW(throw std::runtime_error("counted"), std::runtime_error);
+        spdlog::info("counted");
+    }
+    for (const auto what : {What::allocation, What::lock, What::exception, What::log})
+        EXPECT_GT(counted(Where::our_code, what), before[static_cast<std::size_t>(Where::our_code)][static_cast<std::size_t>(what)]);
+}
 
 }  // namespace
 
