@@ -3,6 +3,7 @@
 #include "picard.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace quorient::attitude {
@@ -11,6 +12,7 @@ namespace {
 constexpr double equal_within = 1e-9;  // relative; what this leaves is below 1e-9 of the coning correction
 constexpr double largest_noise_growth = 100;
 constexpr std::size_t order_when_unresolved = 3;
+constexpr double felt = 0.3;
 
 bool all_equal(std::span<const Sample> samples)
 {
@@ -19,28 +21,37 @@ bool all_equal(std::span<const Sample> samples)
                                [reference](const Sample& s) { return std::abs(s.interval_s - reference) <= equal_within * reference; });
 }
 
-// Whether differences of the rate shrink with their order, as they do for what the samples resolve. A sinusoid of frequency f
-// gives |second| / |first| = 2 sin(pi f / fs), white noise sqrt(3).
-bool resolved(std::span<const Sample> samples, bool equal)
+// How many samples tell something: differences of the rate shrink with their order as long as the samples resolve the motion, and grow
+// where they do not, or where noise is left. A sinusoid of frequency f gives |next| / |this| = 2 sin(pi f / fs) at every order, white noise
+// sqrt(3) and more. Differences that have grown to a third of the first ones would be felt: the polynomial ends before them.
+// Unequal intervals: divided differences of the angle at the samples' ends, in units of the mean interval (equal ones give the same).
+std::size_t resolved_order(std::span<const Sample> samples, bool equal)
 {
-    if (samples.size() <= order_when_unresolved) return true;
-    const auto rate = [&](std::size_t i) -> Eigen::Vector3d {
-        return equal ? samples[i].increment : samples[i].increment / samples[i].interval_s;
-    };
-    double first = 0;
-    double second = 0;
-    Eigen::Vector3d at = rate(0);
-    Eigen::Vector3d before = Eigen::Vector3d::Zero();
-    for (std::size_t i = 1; i < samples.size(); ++i) {
-        const Eigen::Vector3d next = rate(i);
-        const Eigen::Vector3d difference = next - at;
-        first += difference.squaredNorm();
-        if (i > 1) second += (difference - before).squaredNorm();
-        before = difference;
-        at = next;
+    std::array<Eigen::Vector3d, longest_memory + 1> value;
+    std::array<double, longest_memory + 1> end_s{};
+    value[0].setZero();
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        end_s[i + 1] = end_s[i] + samples[i].interval_s;
+        value[i + 1] = value[i] + samples[i].increment;
     }
-    const auto terms = static_cast<double>(samples.size() - 1);
-    return second * terms <= first * (terms - 1);
+    const double mean_s = end_s[samples.size()] / static_cast<double>(samples.size());
+    double first = 0;
+    double before = 0;
+    for (std::size_t order = 1; order <= samples.size(); ++order) {
+        const std::size_t terms = samples.size() + 1 - order;
+        double squares = 0;
+        for (std::size_t i = 0; i < terms; ++i) {
+            value[i] = value[i + 1] - value[i];
+            if (!equal) value[i] *= static_cast<double>(order) * mean_s / (end_s[i + order] - end_s[i]);
+            squares += value[i].squaredNorm();
+        }
+        const double mean = squares / static_cast<double>(terms);
+        if (order == 2) first = mean;  // of the increments: the first of the rate
+        if (order > 2 && mean > before && mean > felt * felt * first)
+            return std::min(samples.size(), std::max(order - 1, order_when_unresolved));
+        before = mean;
+    }
+    return samples.size();
 }
 
 }  // namespace
@@ -50,8 +61,7 @@ bool same_start(double earlier_interval_s, double interval_s)
     return earlier_interval_s <= 4 * interval_s;
 }
 
-Stretch::Stretch(std::span<const Sample> samples)
-    : samples_(samples), equal_(all_equal(samples)), order_(resolved(samples, equal_) ? samples.size() : order_when_unresolved)
+Stretch::Stretch(std::span<const Sample> samples) : samples_(samples), equal_(all_equal(samples)), order_(resolved_order(samples, equal_))
 {
 }
 

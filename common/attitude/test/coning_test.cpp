@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -125,6 +126,35 @@ TEST(AngleRandomWalk, equals_that_of_plain_summation_within_one_percent)
         const double ratio = random_walk("window-10", motion, 1 / cone.sampling_hz) / random_walk("single", motion, 1 / cone.sampling_hz);
         EXPECT_NEAR(std::sqrt(ratio), 1, 0.01) << turn_rad << " rad per sample";
     }
+}
+
+// A hand that shakes an array: some Hz, which ten samples at 62.5 Hz resolve, and a fifth of it near 20 Hz, which they do not.
+Eigen::Vector3d shaken_rad_s(double t)
+{
+    constexpr double turn = 2 * std::numbers::pi;
+    const Eigen::Vector3d slow(20 * std::sin(turn * 3 * t), 20 * std::cos(turn * 2.5 * t), 10 * std::sin(turn * 4 * t));
+    const Eigen::Vector3d fast(4 * std::sin(turn * 21 * t + 1), 4 * std::cos(turn * 19 * t), 4 * std::sin(turn * 23 * t));
+    return slow + fast;
+}
+
+TEST(WindowUpdate, does_not_extrapolate_the_part_of_a_motion_that_is_too_fast_for_its_samples)
+{
+    constexpr double interval_s = 0.016;
+    constexpr int parts = 400;
+    std::vector<Eigen::Vector3d> increments;
+    Quaternion truth = Quaternion::Identity();
+    for (int row = 0; row < 300; ++row) {
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        for (int part = 0; part < parts; ++part) {
+            const Eigen::Vector3d turned = shaken_rad_s((row + (part + 0.5) / parts) * interval_s) * (interval_s / parts);
+            sum += turned;
+            truth = (truth * from_rotation_vector(turned)).normalized();
+        }
+        increments.push_back(sum);
+    }
+    const double window = std::sqrt(squared_difference(run("window-10", increments), truth));
+    const double previous = std::sqrt(squared_difference(run("previous", increments), truth));
+    EXPECT_LE(window, 2 * previous) << "previous: " << previous << " rad";
 }
 
 // Noise alone on a steady turn, where plain summation is exact: the same noise in both, so that few trials tell.
