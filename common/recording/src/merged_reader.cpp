@@ -2,11 +2,19 @@
 #include "readers.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 #include <deque>
 
 namespace quorient::recording {
 namespace {
+
+/// Stamps come in microseconds.
+constexpr std::int64_t rounding_ns = 1000;
+
+/// Devices are switched on and off one after the other: a log that begins later or ends earlier than the others by no more than this
+/// did not fail, and the common log begins and ends with it.
+constexpr std::int64_t switching_ns = 1'000'000'000;
 
 /// One log beside the first: its frames around the time in hand, on the first log's clock.
 class Follower {
@@ -27,6 +35,13 @@ public:
         }
         return ReadOutcome::frame;
     }
+
+    /// After reach(): whether it had begun by then, and whether it has ended before.
+    bool begun(std::int64_t begin_ns) const
+    {
+        return frames_.empty() || frames_.front().time_ns - std::llround(frames_.front().interval_s * 1e9) <= begin_ns + rounding_ns;
+    }
+    bool over(std::int64_t end_ns) const { return ended_ && (frames_.empty() || frames_.back().time_ns < end_ns - rounding_ns); }
 
     /// Adds its axes behind those that the frame has; they are valid where its own frames cover the interval without a hole.
     void add_to(RecordedFrame& frame, std::int64_t begin_ns) const
@@ -51,7 +66,6 @@ public:
                 frame.acceleration_m_s2[first + axis] += weight * own.acceleration_m_s2[axis];
             }
         }
-        constexpr std::int64_t rounding_ns = 1000;  // stamps come in microseconds
         frame.axis_count += count;
         if (frame.time_ns - begin_ns - covered_ns > rounding_ns) return;
         frame.valid_mask |= valid << first;
@@ -78,6 +92,44 @@ public:
 
     ReadOutcome next(RecordedFrame& frame) override
     {
+        for (;;) {
+            if (failed_ && !held_.empty()) {
+                frame = held_.front();
+                held_.pop_front();
+                return give_out(frame);
+            }
+            const auto outcome = merge(frame);
+            if (outcome != ReadOutcome::frame) return outcome;  // at the end, what is held was the switching off
+            const std::int64_t begin_ns = frame.time_ns - std::llround(frame.interval_s * 1e9);
+            if (frame.time_ns <= switching_ns && !all_begun(begin_ns)) continue;
+            if (failed_ || !any_over(frame.time_ns)) return give_out(frame);
+            held_.push_back(frame);
+            failed_ = frame.time_ns - held_.front().time_ns > switching_ns;
+        }
+    }
+
+private:
+    bool all_begun(std::int64_t begin_ns) const
+    {
+        return std::all_of(followers_.begin(), followers_.end(), [&](const Follower& follower) { return follower.begun(begin_ns); });
+    }
+
+    bool any_over(std::int64_t end_ns) const
+    {
+        return std::any_of(followers_.begin(), followers_.end(), [&](const Follower& follower) { return follower.over(end_ns); });
+    }
+
+    ReadOutcome give_out(const RecordedFrame& frame)
+    {
+        ++frames_;
+        if (frame.valid_mask != all_axes(frame.axis_count)) ++incomplete_;
+        add_up();
+        return ReadOutcome::frame;
+    }
+
+    /// The leader's next frame with what the followers measured meanwhile.
+    ReadOutcome merge(RecordedFrame& frame)
+    {
         if (!pending_) {
             const auto outcome = leader_->next(frame_);
             if (outcome != ReadOutcome::frame) return pass_on(outcome, *leader_);
@@ -90,13 +142,9 @@ public:
         frame.truth.reset();
         for (const Follower& follower : followers_) follower.add_to(frame, begin_ns);
         pending_ = false;
-        ++frames_;
-        if (frame.valid_mask != all_axes(frame.axis_count)) ++incomplete_;
-        add_up();
         return ReadOutcome::frame;
     }
 
-private:
     void append(const ClusterDescription& other)
     {
         for (std::size_t axis = 0; axis < other.axis_count; ++axis) {
@@ -141,7 +189,9 @@ private:
     std::unique_ptr<Reader> leader_;
     std::vector<Follower> followers_;
     RecordedFrame frame_;
-    bool pending_ = false;  // the leader's frame waits for the followers
+    bool pending_ = false;            // the leader's frame waits for the followers
+    std::deque<RecordedFrame> held_;  // a log is over: its failure, or the end of all? At most switching_ns of frames
+    bool failed_ = false;             // it was its failure
     std::uint64_t frames_ = 0;
     std::uint64_t incomplete_ = 0;
 };

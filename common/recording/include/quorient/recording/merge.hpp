@@ -25,7 +25,9 @@ struct MergedLogs {
 
 /// Several logs of one motion as one cluster: the axes of all, at the sample times of the first log. What the others measured is split
 /// at these times as if their rates were constant within each of their intervals, so no rotation is lost or counted twice; where a
-/// log has nothing to say its axes are not valid. Mountings are as in the logs (each its own frame): `quorient calibrate` finds them.
+/// log has nothing to say its axes are not valid. Logs that begin or end within one second of each other were switched on and off by hand:
+/// the common log begins when all have begun and ends with the first of them. Mountings are as in the logs (each its own frame): `quorient
+/// calibrate` finds them.
 /// @returns an error as open_log and estimate_offset do, or if there are more than 24 axes.
 tl::expected<MergedLogs, std::string> open_logs(std::span<const std::filesystem::path> files);
 
