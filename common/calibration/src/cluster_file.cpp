@@ -17,7 +17,7 @@ namespace quorient::calibration {
 namespace {
 
 constexpr std::array<std::string_view, 6> top_keys{"name", "kind", "interval_s", "origin", "motion_noise", "axes"};
-constexpr std::array<std::string_view, 2> noise_keys{"along_s", "across_s"};
+constexpr std::array<std::string_view, 3> noise_keys{"along_s", "across_s", "level"};
 constexpr std::array<std::string_view, 9> axis_keys{"instrument", "direction",   "gain",        "bias_rad_s", "bias_spread_rad_s",
                                                     "sigma_rad",  "quantum_rad", "range_rad_s", "position_m"};
 
@@ -160,8 +160,10 @@ std::string to_yaml(const CalibratedCluster& cluster)
     std::string text = fmt::format(
         "# A sensor cluster as calibrated. corrected increment = (raw - bias_rad_s * interval) / gain;\n"
         "# directions are unit vectors in the body frame, sigma_rad is of one corrected increment.\n"
-        "name: {:?}\nkind: gyro\ninterval_s: {:.17g}\norigin: {:?}\nmotion_noise: {{along_s: {:.17g}, across_s: {:.17g}}}\naxes:\n",
-        text_of(description.name), description.interval_s, cluster.origin, cluster.jitter_along_s, cluster.jitter_across_s);
+        "name: {:?}\nkind: gyro\ninterval_s: {:.17g}\norigin: {:?}\nmotion_noise: {{along_s: {:.17g}, across_s: {:.17g}, level: "
+        "{:.17g}}}\naxes:\n",
+        text_of(description.name), description.interval_s, cluster.origin, cluster.jitter_along_s, cluster.jitter_across_s,
+        cluster.motion_level);
     for (std::size_t axis = 0; axis < description.axis_count; ++axis) {
         text += fmt::format(
             "  - {{instrument: {:?}, direction: {}, gain: {:.17g},\n"
@@ -191,6 +193,7 @@ tl::expected<CalibratedCluster, std::string> parse_cluster(const std::string& te
             if (noise && reading.is_map_of(noise, noise_keys)) {
                 reading.number(noise, "along_s", cluster.jitter_along_s, 0);
                 reading.number(noise, "across_s", cluster.jitter_across_s, 0);
+                reading.number(noise, "level", cluster.motion_level, 0, false);
             }
             read_axes(reading, root, cluster);
         }

@@ -25,6 +25,7 @@ CalibratedCluster some_cluster()
         cluster.gain[axis] = truth.gain(row);
     }
     cluster.jitter_along_s = 1.0 / 3e3;
+    cluster.motion_level = 4.0 / 3;
     cluster.origin = "log \"one\".bin";
     return cluster;
 }
@@ -49,7 +50,17 @@ TEST(ClusterFile, reads_back_bit_for_bit)
     EXPECT_EQ(read->description.instrument_count, 3);
     EXPECT_EQ(read->gain, cluster.gain);
     EXPECT_EQ(read->jitter_along_s, cluster.jitter_along_s);
+    EXPECT_EQ(read->motion_level, cluster.motion_level);
     EXPECT_EQ(read->origin, cluster.origin);
+}
+
+TEST(ClusterFile, may_not_know_how_wild_the_motion_noise_is)
+{
+    CalibratedCluster cluster = some_cluster();
+    cluster.motion_level = 0;
+    const auto read = parse_cluster(replaced(to_yaml(cluster), ", level: 0", ""), "cluster.yaml");
+    ASSERT_TRUE(read) << read.error();
+    EXPECT_EQ(read->motion_level, 0);
 }
 
 TEST(ClusterFile, names_every_problem_with_its_place)

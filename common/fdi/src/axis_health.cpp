@@ -3,6 +3,7 @@
 #include "quorient/geometry/redundancy.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -26,6 +27,29 @@ constexpr double habit_memory = 4096;
 bool present(const Measurement& measurement, std::size_t axis)
 {
     return has_axis(measurement.valid, axis) && std::isfinite(measurement.increment[axis]);
+}
+
+/// Whether the other axes, without those of one further instrument, see this one at its range after all: then that instrument may be the
+/// faulty one, whose error the prediction from all of them shares.
+bool is_borne_out(const geometry::SensorCluster& cluster, const Measurement& measurement, std::size_t axis, double least)
+{
+    constexpr double least_determinant = 1e-3;
+    const std::size_t last = *std::max_element(cluster.instrument.begin(), cluster.instrument.end());
+    for (std::size_t left_out = 0; left_out <= last; ++left_out) {
+        if (left_out == cluster.instrument[axis]) continue;
+        Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        for (std::size_t other = 0; other < cluster.size(); ++other) {
+            if (other == axis || cluster.instrument[other] == left_out || !present(measurement, other)) continue;
+            const auto row = cluster.axes.row(static_cast<Eigen::Index>(other));
+            information += row.transpose() * row;
+            sum += row.transpose() * measurement.increment[other];
+        }
+        if (information.determinant() < least_determinant) continue;
+        const double seen = cluster.axes.row(static_cast<Eigen::Index>(axis)).dot(information.inverse() * sum);
+        if (std::abs(seen) >= least) return true;
+    }
+    return false;
 }
 
 }  // namespace
@@ -156,7 +180,8 @@ bool AxisHealth::is_railed(const Measurement& measurement, std::size_t axis) con
 {
     const History& history = history_[axis];
     const double limit = cluster_.range(static_cast<Eigen::Index>(axis)) * measurement.interval_s;
-    return is_near_range(measurement, axis) && history.is_predicted && std::abs(history.predicted) < others_range * limit;
+    return is_near_range(measurement, axis) && history.is_predicted && std::abs(history.predicted) < others_range * limit &&
+           !is_borne_out(cluster_, measurement, axis, others_range * limit);
 }
 
 }  // namespace quorient::fdi

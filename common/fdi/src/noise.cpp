@@ -74,8 +74,9 @@ tl::expected<void, std::string> require_axes(const geometry::SensorCluster& clus
 
 tl::expected<void, std::string> check_figures(const DetectorSettings& settings)
 {
-    for (const auto& [value, name] : {std::pair{settings.tolerance, "tolerance"}, std::pair{settings.sigma, "sigma"},
-                                      std::pair{settings.bound, "bound"}, std::pair{settings.threshold, "threshold"}})
+    for (const auto& [value, name] :
+         {std::pair{settings.tolerance, "tolerance"}, std::pair{settings.sigma, "sigma"}, std::pair{settings.bound, "bound"},
+          std::pair{settings.threshold, "threshold"}, std::pair{settings.motion_noise, "motion_noise"}})
         if (const auto positive = require_positive(value, name); !positive) return positive;
     if (settings.margin && !(std::isfinite(*settings.margin) && *settings.margin >= 0))
         return tl::unexpected(fmt::format("margin must be finite and at least 0, got {}", *settings.margin));

@@ -58,7 +58,7 @@ public:
         return made;
     }
 
-    static constexpr double jitter_s = 0.1e-3;
+    double jitter_s = 0.1e-3;
     geometry::SensorCluster cluster;
 
 private:
@@ -237,6 +237,29 @@ TEST(Accumulating, is_what_auto_takes_on_three_triads_and_not_on_two_nor_for_two
     EXPECT_FALSE(taken(settings, "triads-3"));
 }
 
+/// Whether an array that jitters ten times as much is blamed in violent motion, and when it has a fault of 60 deg/s from frame 5000 on.
+AxisMask blamed_of_a_wild_array(std::optional<double> motion_noise, double bias_deg_s)
+{
+    Array array(35);
+    array.jitter_s = 1e-3;
+    DetectorSettings settings{.method = "accumulating", .motion_noise = motion_noise};
+    settings.instruments = true;
+    auto monitor = FaultMonitor::make(settings, {}, array.cluster).value();
+    for (std::uint64_t sequence = 0; sequence < 6000; ++sequence) {
+        SensorFrame frame = array.frame(sequence, Array::violent);
+        if (sequence >= 5000) frame.increment[4] += bias_deg_s * degree * interval_s;
+        if (const AxisMask isolated = monitor.assess(frame).isolated_mask; isolated != 0) return isolated;
+    }
+    return 0;
+}
+
+TEST(Accumulating, expects_as_much_of_the_motion_as_it_is_told)
+{
+    EXPECT_NE(blamed_of_a_wild_array(std::nullopt, 0), 0U) << "the usual noise is too little here";
+    EXPECT_EQ(blamed_of_a_wild_array(8, 0), 0U);
+    EXPECT_EQ(blamed_of_a_wild_array(8, 60), 0b000111000U);
+}
+
 TEST(Accumulating, refuses_what_it_cannot_serve_and_says_why)
 {
     const auto refusal = [](const DetectorSettings& settings, const geometry::SensorCluster& cluster) {
@@ -252,6 +275,7 @@ TEST(Accumulating, refuses_what_it_cannot_serve_and_says_why)
     cluster.sigma.setZero();
     EXPECT_THAT(refusal({}, cluster), ::testing::HasSubstr("sigma"));
     EXPECT_FALSE(Accumulating::make({}, Array(1).cluster, {.jitter_along_s = -1}));
+    EXPECT_THAT(refusal({.motion_noise = -1}, cluster), ::testing::HasSubstr("motion_noise"));
 }
 
 TEST(Accumulating, states_its_false_alarms_per_hour)

@@ -126,6 +126,26 @@ TEST_F(AxisHealthTest, tells_an_axis_at_its_rail_from_a_body_that_turns_that_fas
               0U);
 }
 
+/// Three triads; which axes are broken when the body turns about x at this rate and one axis along x says something else.
+AxisMask broken_of_three_triads(double rate_rad_s, std::size_t axis, double says_rad_s)
+{
+    auto cluster = geometry::layout("triads-3").value();
+    cluster.sigma.setConstant(sigma_rad);
+    cluster.range.setConstant(range_rad_s);
+    cluster.interval_s = interval_s;
+    AxisHealth health(cluster);
+    const geometry::AxisVector exact = cluster.axes * Eigen::Vector3d(rate_rad_s * interval_s, 0, 0);
+    std::vector<double> z(exact.data(), exact.data() + exact.size());
+    z[axis] = says_rad_s * interval_s;
+    return health.assess({.identity = {1, 0}, .interval_s = interval_s, .increment = z, .valid = cluster.all()});
+}
+
+TEST_F(AxisHealthTest, does_not_take_sound_axes_at_their_range_for_railed_because_a_faulty_one_denies_it)
+{
+    for (const double says : {0.0, -0.99 * range_rad_s}) EXPECT_EQ(broken_of_three_triads(0.99 * range_rad_s, 3, says), 0U) << says;
+    EXPECT_EQ(broken_of_three_triads(0.1 * range_rad_s, 3, 0.99 * range_rad_s), 0b1000U) << "a railed axis is found as ever";
+}
+
 TEST_F(AxisHealthTest, forgives_the_repeats_of_an_axis_beyond_whose_range_the_body_turns)
 {
     constexpr double limit_rad_s = 2.5;

@@ -25,7 +25,7 @@ void parse_verdict(Section& section, fdi::VerdictSettings& verdict)
     if (verdict.confirm_required > verdict.confirm_window) section.problem("confirm_required", "cannot be more than confirm_window");
 }
 
-void parse_detection(Section section, DetectorProcess& detector)
+void parse_detection(Section section, const System& system, DetectorProcess& detector)
 {
     auto& detection = detector.detection;
     section.text("method", detection.method);
@@ -37,6 +37,9 @@ void parse_detection(Section section, DetectorProcess& detector)
     section.whole("max_faults", detection.max_faults);
     section.number("margin", detection.margin, runtime::not_negative);
     section.number("doubt", detection.doubt, {.lowest = 0, .highest = 1});
+    if (const auto& log = system.sensor.source.log; log && log->calibration && log->calibration->motion_level > 0)
+        detection.motion_noise = log->calibration->motion_level;
+    section.number("motion_noise", detection.motion_noise, runtime::above_zero);
     section.boolean("instruments", detection.instruments);
     section.boolean("relaxed", detection.relaxed);
     parse_verdict(section, detector.verdict);
@@ -91,7 +94,7 @@ tl::expected<void, std::string> try_detector(const System& system, const Detecto
 void parse_detector(Section& lane, const System& system, DetectorProcess& detector)
 {
     if (!system.has_attitude()) parse_observers(lane.section("detector"), system, detector);
-    else parse_detection(lane.section("detector"), detector);
+    else parse_detection(lane.section("detector"), system, detector);
     if (detector.observers && (!system.vessel || detector.observers->poles.empty())) return;  // told already
     if (const auto possible = try_detector(system, detector); !possible) lane.problem("detector", possible.error());
 }

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <numbers>
 
@@ -109,6 +110,13 @@ void parse_faults(Section& source, System& system)
     }
 }
 
+/// A file that the system file names, from the folder that holds the system file: whoever starts a process, from wherever, means the same
+/// one.
+std::string beside(const System& system, const std::string& name)
+{
+    return name.empty() ? name : (std::filesystem::path(system.file).parent_path() / name).string();
+}
+
 void parse_log(Section& source, System& system)
 {
     LogSettings log;
@@ -119,6 +127,7 @@ void parse_log(Section& source, System& system)
         source.text("file", log.files.emplace_back());
         source.require("file");
     }
+    for (std::string& file : log.files) file = beside(system, file);
     // Where the file itself states the axes, it states their noise too.
     if (system.sensor.cluster) log.rest_s = 0;
     source.number("rest_s", log.rest_s, {.lowest = 0, .unit = "s"});
@@ -126,7 +135,7 @@ void parse_log(Section& source, System& system)
     source.text("calibration", calibration);
     if (!calibration.empty()) {
         if (system.sensor.cluster) source.problem("calibration", "states the axes, as unit.layout or unit.axes do: keep one of them");
-        if (auto loaded = calibration::load_cluster(calibration)) log.calibration = std::move(*loaded);
+        if (auto loaded = calibration::load_cluster(beside(system, calibration))) log.calibration = std::move(*loaded);
         else source.problem("calibration", loaded.error());
     }
     source.number("from_s", log.from_s, runtime::not_negative);

@@ -3,6 +3,7 @@
 #include "failure.hpp"
 #include "json_output.hpp"
 #include "log_sample.hpp"
+#include "motion_level.hpp"
 #include "quorient/recording/merge.hpp"
 #include "verbs.hpp"
 
@@ -77,6 +78,7 @@ void run(const CalibrateOptions& options)
     const auto samples = read_samples(reader);
     auto calibration = calibration::calibrate(samples, nominal, options.rest);
     if (!calibration) fail(fmt::format("{}: {}", options.logs.front(), calibration.error()));
+    calibration->cluster.motion_level = motion_level(samples, *calibration).value_or(0);
     calibration->cluster.origin = files.front().filename().string();
 
     const auto& statistics = reader.statistics();

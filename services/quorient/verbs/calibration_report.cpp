@@ -52,6 +52,7 @@ Json motion_json(const Calibration& calibration)
             {"across_s", motion.noise.across_s},
             {"largest_acceleration_rad_s2", motion.noise.largest_acceleration_rad_s2},
             {"samples", motion.noise.samples},
+            {"level", calibration.cluster.motion_level > 0 ? Json(calibration.cluster.motion_level) : Json()},
             {"axes_residual_rad_s", calibration.axes_residual_rad_s},
             {"windows", windows}};
 }
@@ -109,6 +110,9 @@ std::string calibration_text(const Calibration& calibration, Samples samples, co
     if (!calibration.motion) return text + fmt::format("\nnominal axes are kept: {}\n", calibration.axes_note);
     const auto& motion = *calibration.motion;
     text += fmt::format("\naxes fitted: they disagree by {:.2f} deg/s rms in motion\n", calibration.axes_residual_rad_s / degree);
+    if (calibration.cluster.motion_level > 0)
+        text += fmt::format("motion noise: {:.2f} times the usual of an array (so much keeps the accumulating detector silent here)\n",
+                            calibration.cluster.motion_level);
     if (motion.noise.samples == 0) return text + "motion noise: no sample turned violently enough to show it\n";
     text += fmt::format("motion noise: {:.3f} ms x |dw/dt| along it, {:.3f} ms across ({} samples, up to {:.0f} deg/s^2)\n",
                         motion.noise.along_s * 1e3, motion.noise.across_s * 1e3, motion.noise.samples,

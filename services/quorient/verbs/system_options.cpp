@@ -1,6 +1,7 @@
 #include "system_options.hpp"
 
 #include <fmt/format.h>
+#include <filesystem>
 
 namespace quorient::cli {
 
@@ -47,7 +48,9 @@ void SystemOptions::add_to(CLI::App& verb)
     verb.add_option("system", file, "The system file (YAML)")->required()->type_name("SYSTEM.yaml");
     verb.add_option("--dds", dds, "DDS vendor of every process in place of the file's: fastdds or cyclonedds");
     verb.add_option("--domain", domain, "DDS domain in place of the file's");
-    verb.add_option("--set", set, "A value in place of the file's, e.g. source.duration_s=5 (repeatable)")
+    verb.add_option(
+            "--set", set,
+            "A value in place of the file's, e.g. source.duration_s=5; a file's name counts from the system file's folder (repeatable)")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
     verb.add_option("--log", log, "The recording in place of the file's");
@@ -59,14 +62,16 @@ void SystemOptions::add_to(CLI::App& verb)
 void SystemOptions::add_replay_to(CLI::App& verb)
 {
     verb.add_option("--system", file, "The system file (YAML); its source gives way to the log")->required()->type_name("FILE");
-    verb.add_option("--set", set, "A value in place of the file's (repeatable)")->type_name("KEY=VALUE")->allow_extra_args(false);
+    verb.add_option("--set", set, "A value in place of the file's; a file's name counts from the system file's folder (repeatable)")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
     verb.add_option("--fault", faults, "One more fault, e.g. axis=7,kind=bias,value=1,start=14 (repeatable)")->allow_extra_args(false);
 }
 
 std::vector<std::string> SystemOptions::assignments() const
 {
     auto result = set;
-    if (!log.empty()) result.push_back(fmt::format("source.file={}", log));
+    if (!log.empty()) result.push_back(fmt::format("source.file={}", std::filesystem::absolute(log).string()));
     if (speed) result.push_back(fmt::format("source.speed={}", *speed));
     for (const auto& fault : faults) result.push_back(fmt::format("source.faults+='{}'", fault));
     return result;

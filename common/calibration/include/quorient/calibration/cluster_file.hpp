@@ -17,7 +17,8 @@ struct CalibratedCluster {
     std::array<double, max_axes> bias_spread_rad_s{};
     double jitter_along_s = 0;  ///< as MotionNoise
     double jitter_across_s = 0;
-    std::string origin;  ///< which log it comes from
+    double motion_level = 0;  ///< times the motion noise that is usual for arrays; 0 = not known
+    std::string origin;       ///< which log it comes from
 };
 
 /// The YAML text of a cluster file; doubles read back bit-identical.

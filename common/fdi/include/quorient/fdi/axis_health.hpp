@@ -14,7 +14,7 @@ enum class AxisFault : std::uint8_t {
     none,
     absent,        ///< NaN, not valid or late in at least 8 of the last 32 frames
     out_of_range,  ///< beyond its stated range by more than 2 %
-    rail,          ///< at its range while the other axes see less than 80 % of it there
+    rail,          ///< at its range while the others see less than 80 % of it there, whichever one instrument is left out of them
     frozen,        ///< bitwise the same while it should have moved, or for longer than its noise ever allows
     zero,          ///< frozen at exactly 0
 };

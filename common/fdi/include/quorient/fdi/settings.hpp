@@ -16,8 +16,9 @@ struct DetectorSettings {
     std::optional<double> threshold{};
     std::optional<unsigned> max_faults{};
     std::optional<double> margin{};
-    std::optional<double> doubt{};  ///< subset: share of right isolations held back because one more, small fault is not ruled out
-    bool instruments = false;       ///< a fault takes a whole instrument
+    std::optional<double> doubt{};         ///< subset: share of right isolations held back because one more, small fault is not ruled out
+    std::optional<double> motion_noise{};  ///< accumulating: times the usual errors of a moving array, see usual_motion_noise
+    bool instruments = false;              ///< a fault takes a whole instrument
     bool relaxed = false;
 };
 
