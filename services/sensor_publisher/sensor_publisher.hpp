@@ -14,6 +14,9 @@ class SensorPublisher {
 public:
     SensorPublisher(const system::SensorSettings& settings, std::unique_ptr<FrameSource> source, bus::Bus& bus, runtime::EventLoop& loop);
 
+    /// What the source met on its way, see FrameSource.
+    std::string remarks() const { return source_->remarks(); }
+
 private:
     void on_status(const ServiceStatus& status);
     void on_command(const FaultCommand& command);

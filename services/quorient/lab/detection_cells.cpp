@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <boost/random/uniform_int_distribution.hpp>
+#include <cassert>
 #include <cmath>
 #include <mutex>
 #include <random>
@@ -109,6 +110,16 @@ void for_each(std::size_t count, const RunSettings& settings, const OnProgress& 
 }
 
 }  // namespace
+
+fdi::FaultMonitor accumulating(const RecordedArray& array, bool instruments, double factor)
+{
+    fdi::DetectorSettings settings{.method = "accumulating"};
+    settings.instruments = instruments;
+    settings.motion_noise = factor * array.motion_noise.value_or(1);
+    auto monitor = fdi::FaultMonitor::make(settings, fdi::VerdictSettings{}, array.cluster);
+    assert(monitor);  // recorded arrays have three instruments or more, with noise and interval
+    return std::move(*monitor);
+}
 
 std::vector<CellResult> play_cells(const std::vector<RecordedArray>& arrays, const std::vector<Cell>& cells, const MonitorOf& monitor_of,
                                    const RunSettings& settings, const OnProgress& on_progress)

@@ -50,6 +50,9 @@ struct HealthyRun {
     double duration_s = 0;
 };
 
+/// The product's detector for arrays, `accumulating`, with the motion noise that the other recording shows times `factor`.
+fdi::FaultMonitor accumulating(const RecordedArray& array, bool instruments, double factor = 1);
+
 /// How the array under test is watched.
 using MonitorOf = std::function<fdi::FaultMonitor(const RecordedArray&, bool instruments)>;
 

@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <numbers>
-#include <numeric>
 
 namespace quorient::lab {
 
@@ -37,31 +36,6 @@ constexpr Kind kinds[] = {
     {"dropout 50 %", FaultKind::dropout, 0.5},
     {"delay 5 ms", FaultKind::delay, 0.005},
 };
-
-/// Every recording, calibrated by the next one: three of its instruments where it has five or more, and all.
-std::vector<RecordedArray> arrays_of(const std::vector<std::filesystem::path>& logs)
-{
-    std::vector<Recording> recordings;
-    for (const auto& log : logs) {
-        auto recording = load_recording(log);
-        if (!recording) cli::fail(recording.error());
-        recordings.push_back(std::move(*recording));
-    }
-    std::vector<RecordedArray> arrays;
-    for (std::size_t i = 0; i < recordings.size(); ++i) {
-        const auto& calibration = recordings[(i + 1) % recordings.size()].calibration.cluster;
-        std::vector<std::size_t> all(calibration.description.instrument_count);
-        std::iota(all.begin(), all.end(), 0);
-        std::vector<std::vector<std::size_t>> sets{all};
-        if (all.size() >= 5) sets.insert(sets.begin(), {0, 2, 4});
-        for (const auto& set : sets) {
-            auto array = corrected(recordings[i], calibration, set);
-            if (!array) cli::fail(array.error());
-            arrays.push_back(std::move(*array));
-        }
-    }
-    return arrays;
-}
 
 simulation::FaultSpec fault_of(const Kind& kind)
 {
@@ -94,28 +68,23 @@ std::vector<Cell> kind_cells(std::size_t arrays)
     return cells;
 }
 
-fdi::FaultMonitor accumulating(const RecordedArray& array, bool instruments)
-{
-    fdi::DetectorSettings settings{.method = "accumulating"};
-    settings.instruments = instruments;
-    auto monitor = fdi::FaultMonitor::make(settings, fdi::VerdictSettings{}, array.cluster);
-    if (!monitor) cli::fail(fmt::format("{}: {}", array.name, monitor.error()));
-    return std::move(*monitor);
-}
-
 }  // namespace
 
 Report detection_delay(const RunSettings& settings, const OnProgress& on_progress)
 {
-    const auto arrays = arrays_of(settings.logs);
+    const auto loaded = load_arrays(settings.logs);
+    if (!loaded) cli::fail(loaded.error());
+    const auto& arrays = *loaded;
+    const MonitorOf monitor = [](const RecordedArray& array, bool instruments) { return accumulating(array, instruments); };
     DetectionFigures figures;
     for (const RecordedArray& array : arrays) figures.arrays.push_back(array.name);
     figures.cells = bias_cells(arrays.size());
     figures.bias_cells = figures.cells.size();
     for (Cell& cell : kind_cells(arrays.size())) figures.cells.push_back(std::move(cell));
-    figures.results = play_cells(arrays, figures.cells, accumulating, settings, on_progress);
+    figures.results = play_cells(arrays, figures.cells, monitor, settings, on_progress);
     for (std::size_t array = 0; array < arrays.size(); ++array)
-        for (const bool instruments : {true, false}) figures.healthy.push_back(play_healthy(arrays, array, instruments, accumulating));
+        for (const bool instruments : {true, false}) figures.healthy.push_back(play_healthy(arrays, array, instruments, monitor));
+    figures.exclusion_costs = exclusion_costs(arrays);
     return detection_report(figures, settings.trials);
 }
 

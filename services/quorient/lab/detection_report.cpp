@@ -112,6 +112,19 @@ void add_healthy(const DetectionFigures& figures, std::string& text)
                        run.suspicious_frames, run.largest_statistic, run.px4_isolations);
 }
 
+void add_exclusion_costs(const DetectionFigures& figures, std::string& text)
+{
+    const auto out = std::back_inserter(text);
+    fmt::format_to(
+        out,
+        "\nWhat it costs to leave a sound instrument out of some frames of violent motion: how far the attitude turns away, deg\n"
+        "{:<48}{:>8}{:>10}{:>10}{:>20}\n",
+        "array", "frames", "median", "90 %", "above 0.1 deg, %");
+    for (const ExclusionCost& cost : figures.exclusion_costs)
+        fmt::format_to(out, "{:<48}{:>8}{:>10.3f}{:>10.3f}{:>20.1f}\n", figures.arrays[cost.array], cost.frames, cost.median_rad / degree,
+                       cost.ninth_decile_rad / degree, 100 * cost.share_above_free);
+}
+
 }  // namespace
 
 Report detection_report(const DetectionFigures& figures, std::uint64_t trials)
@@ -124,6 +137,7 @@ Report detection_report(const DetectionFigures& figures, std::uint64_t trials)
     add_bias_cells(figures, report.text);
     add_kinds(figures, report.text);
     add_healthy(figures, report.text);
+    add_exclusion_costs(figures, report.text);
     for (std::size_t i = 0; i < figures.cells.size(); ++i)
         report.json[i < figures.bias_cells ? "bias" : "kinds"].push_back(json_of(figures.cells[i], figures.results[i], figures.arrays));
     for (const HealthyRun& run : figures.healthy)
@@ -135,6 +149,12 @@ Report detection_report(const DetectionFigures& figures, std::uint64_t trials)
                                           {"suspicious_frames", run.suspicious_frames},
                                           {"largest_statistic", run.largest_statistic},
                                           {"px4_isolations", run.px4_isolations}});
+    for (const ExclusionCost& cost : figures.exclusion_costs)
+        report.json["exclusion_cost"].push_back({{"array", figures.arrays[cost.array]},
+                                                 {"frames", cost.frames},
+                                                 {"median_rad", cost.median_rad},
+                                                 {"ninth_decile_rad", cost.ninth_decile_rad},
+                                                 {"share_above_free", cost.share_above_free}});
     return report;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "detection_cells.hpp"
+#include "exclusion_cost.hpp"
 #include "study.hpp"
 
 namespace quorient::lab {
@@ -12,6 +13,7 @@ struct DetectionFigures {
     std::size_t bias_cells = 0;  ///< the first of them; the others are the kinds of faults
     std::vector<CellResult> results;
     std::vector<HealthyRun> healthy;
+    std::vector<ExclusionCost> exclusion_costs;
 };
 
 Report detection_report(const DetectionFigures& figures, std::uint64_t trials);

@@ -8,18 +8,13 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 namespace quorient::lab {
 
 namespace {
 
-constexpr double free_of_charge_rad = 0.1 * std::numbers::pi / 180;
 constexpr std::size_t frames_before_exclusion = 20;  ///< that the integrators' polynomial windows see
-
-/// A polynomial through many samples would amplify the jitter of a violent motion (window-10: errors of several degrees).
-constexpr const char* algorithm = "previous";
 
 double begin_s(const SensorFrame& frame)
 {
@@ -57,7 +52,6 @@ attitude::Quaternion attitude_after(const std::vector<SensorFrame>& frames, std:
                                     const FaultVerdict& verdict)
 {
     attitude::IntegratorSettings settings;
-    settings.algorithm = algorithm;
     settings.history_s = 2 * horizon_s;
     auto integrator = attitude::Integrator::make(settings, cluster).value();
     for (std::size_t i = from; i < frames.size(); ++i) integrator.add(frames[i]);

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <numbers>
 
 namespace quorient::lab {
 
@@ -41,6 +42,9 @@ struct TrialResult {
 };
 
 inline constexpr double horizon_s = 24;
+
+/// What the attitude's bound allows for whatever the onset's error.
+inline constexpr double free_of_charge_rad = 0.1 * std::numbers::pi / 180;
 
 /// Frames that a detector sees before the fault begins: more than its longest window.
 inline constexpr std::size_t frames_before_fault = 600;

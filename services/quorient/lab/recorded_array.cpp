@@ -2,9 +2,11 @@
 
 #include "quorient/runtime/text.hpp"
 #include "verbs/log_sample.hpp"
+#include "verbs/motion_level.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <numeric>
 
 namespace quorient::lab {
 
@@ -92,6 +94,7 @@ tl::expected<Recording, std::string> load_recording(const std::filesystem::path&
     auto calibration = calibration::calibrate(recording.samples, (*reader)->description());
     if (!calibration) return tl::unexpected(fmt::format("{}: {}", log.string(), calibration.error()));
     recording.calibration = std::move(*calibration);
+    recording.calibration.cluster.motion_level = cli::motion_level(recording.samples, recording.calibration).value_or(0);
     return recording;
 }
 
@@ -110,12 +113,37 @@ tl::expected<RecordedArray, std::string> corrected(const Recording& recording, c
     array.name = recording.name;
     for (const std::size_t instrument : instruments) array.name += fmt::format(" {}", runtime::text_of(theirs.instrument_name[instrument]));
     array.cluster = std::move(*cluster);
+    if (calibration.motion_level > 0) array.motion_noise = calibration.motion_level;
     array.frames.reserve(recording.samples.size());
     for (std::size_t i = 0; i < recording.samples.size(); ++i)
         array.frames.push_back(frame_of(recording.samples[i], recording.sequence[i], calibration, axes));
     array.rest = recording.calibration.rest;
     array.motion = longest_motion(array.rest, array.frames.size());
     return array;
+}
+
+tl::expected<std::vector<RecordedArray>, std::string> load_arrays(const std::vector<std::filesystem::path>& logs)
+{
+    std::vector<Recording> recordings;
+    for (const auto& log : logs) {
+        auto recording = load_recording(log);
+        if (!recording) return tl::unexpected(recording.error());
+        recordings.push_back(std::move(*recording));
+    }
+    std::vector<RecordedArray> arrays;
+    for (std::size_t i = 0; i < recordings.size(); ++i) {
+        const auto& calibration = recordings[(i + 1) % recordings.size()].calibration.cluster;
+        std::vector<std::size_t> all(calibration.description.instrument_count);
+        std::iota(all.begin(), all.end(), 0);
+        std::vector<std::vector<std::size_t>> sets{all};
+        if (all.size() >= 5) sets.insert(sets.begin(), {0, 2, 4});
+        for (const auto& set : sets) {
+            auto array = corrected(recordings[i], calibration, set);
+            if (!array) return tl::unexpected(array.error());
+            arrays.push_back(std::move(*array));
+        }
+    }
+    return arrays;
 }
 
 double RecordedArray::duration_s() const

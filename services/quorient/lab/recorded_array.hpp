@@ -6,6 +6,7 @@
 #include "quorient/recording/reader.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -27,6 +28,7 @@ tl::expected<Recording, std::string> load_recording(const std::filesystem::path&
 struct RecordedArray {
     std::string name;  ///< e.g. "exp_1, IMU1 IMU3 IMU5"
     geometry::SensorCluster cluster;
+    std::optional<double> motion_noise{};  ///< fdi::DetectorSettings::motion_noise, as the other recording shows it
     std::vector<SensorFrame> frames;
     std::vector<calibration::Segment> rest;
     calibration::Segment motion;  ///< the longest stretch without rest
@@ -38,5 +40,8 @@ struct RecordedArray {
 /// @returns what tells that the two are not of the same sensors.
 tl::expected<RecordedArray, std::string> corrected(const Recording& recording, const calibration::CalibratedCluster& calibration,
                                                    const std::vector<std::size_t>& instruments);
+
+/// Every recording, calibrated by the next one: three of its instruments where it has five or more, and all.
+tl::expected<std::vector<RecordedArray>, std::string> load_arrays(const std::vector<std::filesystem::path>& logs);
 
 }  // namespace quorient::lab

@@ -35,10 +35,14 @@ Report vessel(const RunSettings& settings, const OnProgress& on_progress);
 /// how soon the accumulating detector names them, beside the PX4 rule, and what it says of the recordings as they are.
 Report detection_delay(const RunSettings& settings, const OnProgress& on_progress);
 
+/// The same recordings without a fault and with steps in violent motion, with the detector's motion noise wrong by factors of 0.5 to 2.
+Report motion_noise(const RunSettings& settings, const OnProgress& on_progress);
+
 inline constexpr std::uint64_t isolation_trials = 100'000;
 inline constexpr std::uint64_t paper_002_trials = 400'000;
 inline constexpr std::uint64_t ceiling_trials = 200'000;
 inline constexpr std::uint64_t vessel_trials = 100;
 inline constexpr std::uint64_t detection_delay_trials = 60;
+inline constexpr std::uint64_t motion_noise_trials = 30;
 
 }  // namespace quorient::lab

@@ -72,6 +72,7 @@ tl::expected<void, std::string> Offline::run()
         while (loop_.dispatch() || loop_.work()) continue;
         clock_.set(std::max(clock_.steady_ns() + 1, loop_.next_deadline_ns()));
     }
+    remarks_ = publisher.remarks();
     return {};
 }
 

@@ -28,6 +28,9 @@ public:
     /// The latest status of the first lane's detector: what its intake refused.
     const ServiceStatus& intake() const { return intake_; }
 
+    /// What the source met on its way: of a log, what it refused and why, counted.
+    const std::string& remarks() const { return remarks_; }
+
 private:
     void observe(RunObserver& observer, ReplayReport& report);
 
@@ -41,6 +44,7 @@ private:
     std::vector<std::unique_ptr<integrator::AttitudeIntegrator>> integrators_;
     std::vector<std::unique_ptr<detector::ParityFdi>> detectors_;
     ServiceStatus intake_;
+    std::string remarks_;
 };
 
 }  // namespace quorient::live

@@ -29,6 +29,7 @@ constexpr Study studies[] = {
     {"ceiling", lab::ceiling_trials, lab::ceiling},
     {"vessel", lab::vessel_trials, lab::vessel},
     {"detection-delay", lab::detection_delay_trials, lab::detection_delay},
+    {"motion-noise", lab::motion_noise_trials, lab::motion_noise},
 };
 
 struct LabOptions {
@@ -44,7 +45,7 @@ struct LabOptions {
 /// The recordings that the user names, or the two of one array that the data folder holds.
 std::vector<std::filesystem::path> logs_of(const LabOptions& options)
 {
-    if (options.study != "detection-delay") return {};
+    if (options.study != "detection-delay" && options.study != "motion-noise") return {};
     if (options.logs.size() == 1) fail("--log: two or more recordings of the same sensors are needed: each is calibrated by another one");
     if (!options.logs.empty()) return {options.logs.begin(), options.logs.end()};
     const char* const given = std::getenv("QUORIENT_DATA_DIR");
@@ -57,7 +58,7 @@ const Study& study_of(const LabOptions& options)
 {
     for (const Study& study : studies)
         if (options.study == study.name) return study;
-    fail(fmt::format("unknown study '{}'; known are isolation, paper-002, ceiling, vessel, detection-delay", options.study));
+    fail(fmt::format("unknown study '{}'; known are isolation, paper-002, ceiling, vessel, detection-delay, motion-noise", options.study));
 }
 
 void run(const LabOptions& options)
@@ -88,19 +89,22 @@ void add_lab(CLI::App& program)
         "paper-002   the figures of the paper that a fitted fault model reproduces\n"
         "ceiling     what a single sample can detect and isolate, per layout\n"
         "vessel      observers on the vessel of paper 001: false alarms and isolation with a model that is 5 % wrong\n"
-        "detection-delay  faults added to two recordings of one array (--log twice), each corrected by the other's calibration\n\n"
+        "detection-delay  faults added to two recordings of one array (--log twice), each corrected by the other's calibration\n"
+        "motion-noise     the same steps in violent motion, with the detector's motion noise wrong by factors of 0.5 to 2\n\n"
         "The result depends on trials and seed, not on the number of threads.\n\n"
         "Example: every method on the dodecahedron and the cone, with a plot\n"
         "  quorient lab isolation --trials 100000 --seed 1 --plot isolation.svg\n");
     const auto options = std::make_shared<LabOptions>();
-    verb->add_option("study", options->study, "isolation, paper-002, ceiling, vessel or detection-delay")->option_text("STUDY")->required();
+    verb->add_option("study", options->study, "isolation, paper-002, ceiling, vessel, detection-delay or motion-noise")
+        ->option_text("STUDY")
+        ->required();
     verb->add_option("--trials", options->trials, "of each scene (default: what takes some seconds)")
         ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}));
     verb->add_option("--seed", options->seed, "of the random numbers")->capture_default_str();
     verb->add_option("--threads", options->threads, "0 = one per core")->check(CLI::Range(0U, 1024U))->capture_default_str();
     verb->add_option("--plot", options->plot, "writes the charts to this SVG file");
     verb->add_option("--log", options->logs,
-                     "detection-delay: a recording; repeat it (default: the two in QUORIENT_DATA_DIR or ../shared/data)");
+                     "detection-delay, motion-noise: a recording; repeat it (default: the two in QUORIENT_DATA_DIR or ../shared/data)");
     verb->add_flag("--json", options->json, "one line of JSON, 17 significant digits");
     verb->callback([options] { run(*options); });
 }

@@ -6,6 +6,7 @@
 #include "verbs.hpp"
 
 #include <fmt/format.h>
+#include <filesystem>
 #include <memory>
 
 namespace quorient::cli {
@@ -20,12 +21,13 @@ struct ReplayOptions {
     bool json = false;
 };
 
-Json report_json(const live::RunObserver& run, const live::ReplayReport& report, const ServiceStatus& intake)
+Json report_json(const live::RunObserver& run, const live::ReplayReport& report, const live::Offline& offline)
 {
     const auto& errors = run.voted().errors;
     Json json;
     json["frames"] = run.truth_frames();
-    json["rejected"] = {{"axes_and_frames", intake.rejected}, {"gaps", intake.gaps}};
+    json["log"] = offline.remarks();
+    json["rejected"] = {{"axes_and_frames", offline.intake().rejected}, {"gaps", offline.intake().gaps}};
     json["faults"] = report.faults();
     json["false_isolations"] = report.false_isolations();
     auto& attitude = json["attitude"];
@@ -40,7 +42,7 @@ Json report_json(const live::RunObserver& run, const live::ReplayReport& report,
 
 void print_table(const Json& json)
 {
-    fmt::print("frames {}\n", json["frames"].get<std::uint64_t>());
+    fmt::print("frames {}\nlog {}\n", json["frames"].get<std::uint64_t>(), json["log"].get<std::string>());
     for (const auto& fault : json["faults"]) {
         fmt::print("{}\n", fault["spec"].get<std::string>());
         if (!fault.contains("lanes")) continue;
@@ -56,13 +58,14 @@ void print_table(const Json& json)
                dump(json["attitude"]["max_error_rad"]), dump(json["attitude"]["final_error_rad"]));
 }
 
-/// A list of file names as YAML.
+/// A list of file names as YAML; absolute, since those of a system file count from its folder.
 std::string quoted(const std::vector<std::string>& logs)
 {
     std::string list;
     for (const auto& log : logs) {
         std::string name;
-        for (const char character : log) name += character == '\'' ? std::string("''") : std::string(1, character);
+        for (const char character : std::filesystem::absolute(log).string())
+            name += character == '\'' ? std::string("''") : std::string(1, character);
         list += fmt::format("{}'{}'", list.empty() ? "" : ",", name);
     }
     return fmt::format("[{}]", list);
@@ -84,7 +87,7 @@ int replay(ReplayOptions options)
         fmt::print(stderr, "{}\n", done.error());
         return 2;
     }
-    const auto json = report_json(run, report, offline.intake());
+    const auto json = report_json(run, report, offline);
     if (options.json) fmt::print("{}\n", dump(json));
     else print_table(json);
     return 0;
