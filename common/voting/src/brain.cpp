@@ -94,8 +94,9 @@ void Voter::Brain::notice(std::int64_t now_ns)
     const std::int64_t before = *now_;
     now_ = std::max(before, now_ns);
     const std::int64_t away_ns = *now_ - before;
-    if (away_ns > lease_ns_) start_over(away_ns);
-    else if (*now_ > promised_ns_ + interval_ns_ / 2) joining_.was_delayed(*now_, away_ns);
+    const bool late = *now_ > promised_ns_ + interval_ns_ / 2;
+    if (away_ns > lease_ns_ || (late && joining_.may_be_replaced(away_ns))) start_over(away_ns);
+    else if (late) joining_.was_delayed(*now_, away_ns);
 }
 
 void Voter::Brain::start_over(std::int64_t away_ns)

@@ -19,10 +19,17 @@ public:
 
     void begin(std::int64_t now_ns);
 
+    /// After so long an absence, another voter may have taken over or do so before it could be heard: the last sign of life is up to an
+    /// interval older than the absence, and what the other says is on its way for up to another one.
+    bool may_be_replaced(std::int64_t away_ns) const
+    {
+        return has_others_ && away_ns > std::max(lease_ns_ / 2, lease_ns_ - 2 * interval_ns_);
+    }
+
     /// This voter did not look for so long, less than its lease, and later than it had meant to.
     void was_delayed(std::int64_t now_ns, std::int64_t away_ns);
 
-    /// It was away longer than its lease: no longer believed by anyone. What is pending is too old to publish.
+    /// It was away about its lease or longer: perhaps no longer believed by anyone. What is pending is too old to publish.
     void start_over(std::int64_t now_ns);
 
     /// Nothing is published yet.
