@@ -28,9 +28,10 @@ namespace quorient::fdi {
 /// window is looked at eight times in its own length, every frame while one comes near its limit. statistic = largest
 /// sqrt(T / its threshold), threshold 1.
 ///
-/// Isolated where the best hypothesis exceeds the second by settings.margin (ratio of statistics, default 1.25) in the most certain
-/// window; else ambiguous. Onset: the step is estimated over that window; the onset is where a step of this size is likeliest to have
-/// begun; both are repeated until they agree. (A small error that was there before does then not draw the onset into the past.)
+/// Isolated where the best hypothesis exceeds its rivals by settings.margin (ratio of statistics, default 1.25): the second one in the most
+/// certain window, and whom any other window suspects with a certainty of 0.9 or more; else ambiguous. Onset: the step is estimated over
+/// that window; the onset is where a step of this size is likeliest to have begun; both are repeated until they agree. (A small error that
+/// was there before does then not draw the onset into the past.)
 ///
 /// Each frame waits for its successor (ArraySums): one frame of delay. An instrument that has lost an axis is no longer compared.
 class Accumulating final : public Detector {
