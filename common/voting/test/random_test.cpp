@@ -446,7 +446,8 @@ private:
         ++clock_;
     }
 
-    /// Runs the voter up to now, then hands the message in; a voter that is stopped finds it in its queue when it wakes.
+    /// Runs the voter up to now, then hands the message in. A voter that is stopped finds it in its queue when it wakes, topic by topic in
+    /// the order in which the process reads them, and before any of its timers.
     void deliver(std::size_t index, const Message& message)
     {
         Process& process = voters_[index];
@@ -456,24 +457,23 @@ private:
             return;
         }
         if (process.stopped_until > process.started) {
-            run(index, process.stopped_until, true);
             process.started = process.stopped_until;
             auto waiting = std::move(process.queue);
             process.queue.clear();
+            // Other voters, verdicts, attitudes: the alternatives from the last to the first.
+            std::stable_sort(waiting.begin(), waiting.end(),
+                             [](const auto& a, const auto& b) { return a.second.index() > b.second.index(); });
             for (const auto& [time, queued] : waiting) hand_in(index, queued, now_);
+            process.voter->poll(now_);
+            collect(index);
         }
-        run(index, now_, false);
+        run(index, now_);
         hand_in(index, message, now_);
     }
 
-    void run(std::size_t index, std::int64_t until, bool stopped)
+    void run(std::size_t index, std::int64_t until)
     {
         Voter& voter = *voters_[index].voter;
-        if (stopped) {
-            voter.poll(until);
-            collect(index);
-            return;
-        }
         while (voter.next_deadline_ns() <= until) {
             const std::int64_t deadline = voter.next_deadline_ns();
             voter.poll(deadline);
