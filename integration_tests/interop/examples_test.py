@@ -28,6 +28,9 @@ def samples(log):
     return [Voted(line) for line in log.read_text().split("\n")[:-1]]
 
 
+FOUND_WITHIN_FRAMES = 400  # 2 s: twice what the vendors take to find each other
+
+
 class Examples(InteropTest):
     CONSUMERS = ("consumer_cyclonedds", "consumer_fastdds")
 
@@ -69,8 +72,11 @@ class Examples(InteropTest):
 
     def assert_stream_is_true(self, truth, stream, from_sequence=0):
         self.assertGreater(len(stream), 0.9 * len(truth))
-        self.assertEqual({sample.voter for sample in stream[20:]}, {1}, "the stronger voter owns the stream")
-        for before, after in zip(stream[20:], stream[21:]):
+        # Nobody waits for the consumers: one may find the weaker voter first, and the stronger one when the frames come already.
+        found = next((place for place, sample in enumerate(stream) if sample.voter == 1), len(stream))
+        self.assertLess(found, FOUND_WITHIN_FRAMES, "the stronger voter is found")
+        self.assertEqual({sample.voter for sample in stream[found:]}, {1}, "the stronger voter owns the stream")
+        for before, after in zip(stream[found:], stream[found + 1:]):
             self.assertGreater(after.output_sequence, before.output_sequence)
         errors = [angle(sample.attitude, truth[sample.sequence]) for sample in stream if sample.sequence >= from_sequence]
         self.assertLess(max(errors), 3e-6)
