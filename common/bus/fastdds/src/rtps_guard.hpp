@@ -10,9 +10,10 @@ namespace quorient::bus::fastdds {
 /// at most 65536 numbers and fragments of samples of at most 1 MiB.
 ///
 /// Why: Fast DDS 2.9.1 as packaged (statistics and assertions on) aborts the process on a datagram whose statistics submessage has
-/// another length, clears gigabytes where inline QoS reaches beyond its submessage (the size of the payload behind it is then below 0),
-/// keeps the numbers of a gap one by one, and takes the memory for a whole sample on its first fragment, whoever sent them. What is refused
-/// here never reaches its parser. A true writer's gap that is longer costs nothing: its heartbeat says the same.
+/// another length; where inline QoS reaches beyond its submessage it takes the size of the payload behind it for gigabytes and clears
+/// them; it keeps the numbers of a gap one by one, and takes the memory for a whole sample on its first fragment, whoever sent them. What
+/// is refused here never reaches its parser. A true writer's longer gap would be refused too; by the protocol its next heartbeat says the
+/// same (not tried: writers here keep far fewer samples).
 bool is_sound_rtps(const std::uint8_t* data, std::size_t size);
 
 }  // namespace quorient::bus::fastdds
