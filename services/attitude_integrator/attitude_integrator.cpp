@@ -26,6 +26,9 @@ constexpr double much_surer = 4;
 /// An order about a frame that other lanes have had already waits for it; one further off is a mistake.
 constexpr double most_frames_ahead = 64;
 
+/// So long it waits before it is refused.
+constexpr std::int64_t reset_patience_ns = 1'000'000'000;
+
 /// Of an axis' direction between descriptions of the same sensors: more than rounding, less than any mounting.
 constexpr double largest_axis_change = 1e-6;
 
@@ -47,6 +50,7 @@ AttitudeIntegrator::AttitudeIntegrator(const system::IntegratorProcess& settings
       node_(settings.process.node, bus, loop),
       attitudes_(bus.advertise(bus::topics::attitude)),
       patience_timer_(loop.timer([this] { publish_pending(); })),
+      reset_timer_(loop.timer([this] { refuse_waiting_reset("has not come within a second"); })),
       intake_(settings.process.node.unit, settings.kind)
 {
     node_.main_output([this] { return attitudes_.status(); });
@@ -182,7 +186,7 @@ void AttitudeIntegrator::publish_pending()
     node_.handled(identity_of(attitude), arrival_ns_);
     tell_changes(attitude);
     last_ = attitude;
-    if (waiting_reset_ && static_cast<double>(last_.sequence) >= waiting_reset_->value) on_command(*std::exchange(waiting_reset_, {}));
+    if (waiting_reset_ && static_cast<double>(last_.sequence) >= waiting_reset_->value) obey(*std::exchange(waiting_reset_, {}));
 }
 
 void AttitudeIntegrator::tell_changes(const AttitudeState& attitude)
@@ -250,16 +254,33 @@ void AttitudeIntegrator::on_command(const FaultCommand& command)
 {
     if (command.unit != settings_.process.node.unit || command.action != static_cast<std::uint8_t>(CommandAction::reset_attitude)) return;
     publish_pending();
+    refuse_waiting_reset("had not come when another order did");
     const double frames_ahead = command.value - static_cast<double>(last_.sequence);
     if (integrator_ && frames_ahead > 0 && frames_ahead < most_frames_ahead) {
         waiting_reset_ = command;
+        reset_timer_.set(node_.clock().steady_ns() + reset_patience_ns);
         return;
     }
+    obey(command);
+}
+
+void AttitudeIntegrator::obey(const FaultCommand& command)
+{
     const auto refusal = reset_attitude(command);
-    node_.report(refusal.empty() ? EventCode::command_done : EventCode::command_refused,
-                 refusal.empty() ? Severity::info : Severity::warning_low, identity_of(last_), 0,
-                 refusal.empty() ? fmt::format("attitude reset by command as of sequence {:.0f}", command.value) : refusal,
-                 command.request);
+    if (!refusal.empty()) return refuse(command, refusal);
+    node_.report(EventCode::command_done, Severity::info, identity_of(last_), 0,
+                 fmt::format("attitude reset by command as of sequence {:.0f}", command.value), command.request);
+}
+
+void AttitudeIntegrator::refuse(const FaultCommand& command, const std::string& why)
+{
+    node_.report(EventCode::command_refused, Severity::warning_low, identity_of(last_), 0, why, command.request);
+}
+
+void AttitudeIntegrator::refuse_waiting_reset(const char* what_became_of_its_frame)
+{
+    const auto command = std::exchange(waiting_reset_, {});
+    if (command) refuse(*command, fmt::format("cannot reset: sequence {:.0f} {}", command->value, what_became_of_its_frame));
 }
 
 }  // namespace quorient::integrator

@@ -21,6 +21,9 @@ private:
     void on_description(const ClusterDescription& description);
     void on_voted(const VotedAttitude& voted);
     void on_command(const FaultCommand& command);
+    void obey(const FaultCommand& command);
+    void refuse(const FaultCommand& command, const std::string& why);
+    void refuse_waiting_reset(const char* what_became_of_its_frame);
     std::string reset_attitude(const FaultCommand& command);
     void handle_accepted();
     bool prepare(const ClusterDescription& description, std::uint64_t first_sequence);
@@ -37,6 +40,7 @@ private:
     bus::Subscription<SensorFrame>* frames_ = nullptr;
     bus::Subscription<FaultVerdict>* verdicts_ = nullptr;
     runtime::Timer& patience_timer_;
+    runtime::Timer& reset_timer_;
     runtime::FrameIntake intake_;
     std::optional<attitude::Integrator> integrator_;
     geometry::Axes axes_;                        ///< of integrator_

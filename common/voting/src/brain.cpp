@@ -94,8 +94,9 @@ void Voter::Brain::notice(std::int64_t now_ns)
     const std::int64_t before = *now_;
     now_ = std::max(before, now_ns);
     const std::int64_t away_ns = *now_ - before;
+    const std::int64_t mute_ns = std::max(away_ns, spoke_ns_ ? *now_ - *spoke_ns_ : 0);
     const bool late = *now_ > promised_ns_ + interval_ns_ / 2;
-    if (away_ns > lease_ns_ || (late && joining_.may_be_replaced(away_ns))) start_over(away_ns);
+    if (away_ns > lease_ns_ || (late && joining_.may_be_replaced(mute_ns))) start_over(mute_ns);
     else if (late) joining_.was_delayed(*now_, away_ns);
 }
 
@@ -104,6 +105,7 @@ void Voter::Brain::start_over(std::int64_t away_ns)
     ++counters_.resynchronised;
     narrator_.away(timeline_.newest(), seconds(away_ns));
     timeline_.forget_frames();
+    spoke_ns_.reset();
     ranking_.start_over();
     joining_.start_over(*now_);
 }
@@ -412,6 +414,7 @@ void Voter::Brain::emit(const VotedAttitude& attitude, bool repeated)
     outputs_.push().attitude = attitude;
     ranking_.published(attitude.output_sequence);
     owned_.push(attitude, repeated, *now_);
+    spoke_ns_ = *now_;
     ++counters_.published;
 }
 

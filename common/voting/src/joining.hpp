@@ -19,11 +19,12 @@ public:
 
     void begin(std::int64_t now_ns);
 
-    /// After so long an absence, another voter may have taken over or do so before it could be heard: the last sign of life is up to an
-    /// interval older than the absence, and what the other says is on its way for up to another one.
-    bool may_be_replaced(std::int64_t away_ns) const
+    /// After so long without an output, be it in one absence or in several that followed one another, another voter may have taken over
+    /// or do so before it could be heard: the last sign of life is up to an interval older, and what the other says is on its way for up
+    /// to another one.
+    bool may_be_replaced(std::int64_t mute_ns) const
     {
-        return has_others_ && away_ns > std::max(lease_ns_ / 2, lease_ns_ - 2 * interval_ns_);
+        return has_others_ && mute_ns > std::max(lease_ns_ / 2, lease_ns_ - 2 * interval_ns_);
     }
 
     /// This voter did not look for so long, less than its lease, and later than it had meant to.
