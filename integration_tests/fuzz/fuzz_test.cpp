@@ -1,19 +1,25 @@
-// Deterministic runs of every target in the ordinary test run: as many inputs as fit a few seconds, always the same ones. The same
-// targets run under libFuzzer with -DQUORIENT_LIBFUZZER=ON (clang); README.md.
+// Deterministic runs of every target in the ordinary test run: input N is always the same one. The same targets run under libFuzzer
+// with -DQUORIENT_LIBFUZZER=ON (clang); README.md.
 
 #include "targets.hpp"
 
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <unistd.h>
-#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <random>
+#include <string_view>
 #include <vector>
 
 namespace quorient::fuzz {
 
 namespace {
+
+constexpr unsigned hang_s = 30;
 
 std::size_t resident_kb()
 {
@@ -23,21 +29,62 @@ std::size_t resident_kb()
     return resident * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) / 1024;
 }
 
-/// QUORIENT_FUZZ_SCALE multiplies the inputs, for longer runs.
+std::uint64_t number_from(const char* name)
+{
+    const char* text = std::getenv(name);
+    return text == nullptr ? 0 : std::strtoull(text, nullptr, 10);
+}
+
+/// The words for an input that ends the process, kept ready: a signal handler may write but not format.
+std::array<char, 64> last_words{};
+
+void name_input(std::uint64_t seed)
+{
+    std::snprintf(last_words.data(), last_words.size(), "fuzz_test: ended by input QUORIENT_FUZZ_SEED=%llu\n",
+                  static_cast<unsigned long long>(seed));
+    ::alarm(hang_s);
+}
+
+/// An abort, a fault or an input that takes longer than hang_s ends the process as ever, but says by which input.
+void say_which_input_ends_it()
+{
+    struct sigaction action {};
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    action.sa_handler = [](int signal) {
+        const std::string_view words{last_words.data()};
+        [[maybe_unused]] const auto written = ::write(STDERR_FILENO, words.data(), words.size());
+        ::raise(signal);
+    };
+    for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGALRM}) ::sigaction(signal, &action, nullptr);
+}
+
+/// So many inputs, or more for as long as QUORIENT_FUZZ_SECONDS; the first one is number QUORIENT_FUZZ_SEED.
 void run(void (*target)(const std::uint8_t*, std::size_t), std::uint64_t inputs, std::size_t longest)
 {
-    if (const char* scale = std::getenv("QUORIENT_FUZZ_SCALE")) inputs *= static_cast<std::uint64_t>(std::max(1, std::atoi(scale)));
+    using Clock = std::chrono::steady_clock;
+    const auto begin = Clock::now();
+    const auto end = begin + std::chrono::seconds{number_from("QUORIENT_FUZZ_SECONDS")};
+    const std::uint64_t first = number_from("QUORIENT_FUZZ_SEED");
     std::vector<std::uint8_t> input(longest);
+    std::uint64_t done = 0;
     std::size_t warm_kb = 0;
-    for (std::uint64_t seed = 0; seed < inputs; ++seed) {
-        SCOPED_TRACE(testing::Message() << "seed " << seed);
+    say_which_input_ends_it();
+    for (; done < inputs || Clock::now() < end; ++done) {
+        const std::uint64_t seed = first + done;
+        name_input(seed);
         std::mt19937_64 random{seed};
         input.resize(1 + random() % longest);
         for (auto& byte : input) byte = static_cast<std::uint8_t>(random());
         target(input.data(), input.size());
-        if (seed == inputs / 4) warm_kb = resident_kb();
+        if (done == inputs / 4) warm_kb = resident_kb();
     }
-    EXPECT_LT(resident_kb(), warm_kb + 4096) << "it grows";
+    ::alarm(0);
+    const double took_s = std::chrono::duration<double>(Clock::now() - begin).count();
+    const auto last_kb = resident_kb();
+    std::printf("%llu executions from input %llu, %.0f/s, %zu KiB at the end, %+lld since input %llu\n",
+                static_cast<unsigned long long>(done), static_cast<unsigned long long>(first), static_cast<double>(done) / took_s, last_kb,
+                static_cast<long long>(last_kb) - static_cast<long long>(warm_kb), static_cast<unsigned long long>(first + inputs / 4));
+    EXPECT_LT(last_kb, warm_kb + 4096) << "it grows";
 }
 
 TEST(Fuzz, frames_and_descriptions_of_any_kind_break_no_promise_of_detector_and_integrator)

@@ -36,9 +36,9 @@ void votes(const std::uint8_t* data, std::size_t size)
         while (voter.next_output(output)) {
             REQUIRE(output.attitude.output_sequence > last_output);
             last_output = output.attitude.output_sequence;
-            double norm = 0;
-            for (const double component : output.attitude.attitude) norm += component * component;
-            REQUIRE(std::abs(norm - 1) < 1e-6);
+            double squared_norm = 0;
+            for (const double component : output.attitude.attitude) squared_norm += component * component;
+            REQUIRE(std::abs(std::sqrt(squared_norm) - 1) < 1e-6);
         }
         voting::VoterEvent event;
         while (voter.next_event(event)) continue;

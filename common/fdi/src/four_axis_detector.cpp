@@ -79,7 +79,7 @@ void FourAxisDetector::assess(const Measurement& measurement, Assessment& assess
     } else if (excluded_ == 0 && !holding_) {
         Frame frame{.identity = measurement.identity};
         for (std::size_t k = 0; k < axis_count; ++k)
-            if (triads_[k].mask() == usable) frame.body = triads_[k].body(measurement.increment);
+            if (triads_[k].mask() == usable) frame.body = triads_[k].body(Eigen::Map<const Eigen::Vector4d>(measurement.increment.data()));
         learn(frame);
     }
 }
@@ -95,7 +95,7 @@ FourAxisDetector::Frame FourAxisDetector::frame_of(const Measurement& measuremen
     const Eigen::Map<const Eigen::Vector4d> z(measurement.increment.data());
     Frame frame{.identity = measurement.identity};
     frame.body = least_squares_ * z;
-    for (std::size_t k = 0; k < axis_count; ++k) frame.triad_body[k] = triads_[k].body(measurement.increment);
+    for (std::size_t k = 0; k < axis_count; ++k) frame.triad_body[k] = triads_[k].body(z);
     frame.parity = parity_vector_.dot(z);
     frame.horizon = holding_ ? held_frames_ + 1 : 1;
     return frame;

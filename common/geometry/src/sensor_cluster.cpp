@@ -14,6 +14,9 @@ namespace {
 
 constexpr double norm_tolerance = 1e-4;  // admits axes typed in five decimals, and catches a forgotten normalisation
 
+// Beyond these no sensor is, and the squares, their ratios and what is solved with them leave what a double resolves.
+constexpr double least_noise = 1e-15, largest_noise = 1e3, largest_noise_ratio = 1e6;
+
 using Problem = std::optional<std::string>;
 
 Problem problem_with(const Axes& axes)
@@ -54,14 +57,44 @@ Problem problem_with(const char* what, const std::array<double, max_axes>& figur
     return std::nullopt;
 }
 
+Problem problem_with_noise(const char* what, const std::array<double, max_axes>& figure, std::size_t axis_count)
+{
+    if (const auto problem = problem_with(what, figure, axis_count)) return problem;
+    for (std::size_t axis = 0; axis < axis_count; ++axis)
+        if (figure[axis] != 0 && (figure[axis] < least_noise || figure[axis] > largest_noise))
+            return fmt::format("{} of axis {} is {}; 0 (unknown) or {:g} to {:g} is needed", what, axis, figure[axis], least_noise,
+                               largest_noise);
+    return std::nullopt;
+}
+
+Problem problem_with_ratio(const ClusterDescription& description, std::size_t axis_count)
+{
+    const auto ratio_too_large = [axis_count](auto figure_of) {
+        double least = largest_noise, largest = 0;
+        for (std::size_t axis = 0; axis < axis_count; ++axis) {
+            const double figure = figure_of(axis);
+            if (figure > 0) least = std::min(least, figure);
+            largest = std::max(largest, figure);
+        }
+        return largest > largest_noise_ratio * least;
+    };
+    const auto& sigma = description.sigma;
+    const auto& quantum = description.quantum;
+    if (!ratio_too_large([&](std::size_t axis) { return sigma[axis]; }) &&
+        !ratio_too_large([&](std::size_t axis) { return std::hypot(sigma[axis], quantum[axis]); }))
+        return std::nullopt;
+    return fmt::format("one axis has more than {:g} times the noise of another; leave it out of the cluster", largest_noise_ratio);
+}
+
 Problem problem_with(const ClusterDescription& description)
 {
     const std::size_t n = description.axis_count;
     if (n > max_axes) return fmt::format("{} axes given; at most {} are supported", n, max_axes);
     if (!std::isfinite(description.interval_s) || description.interval_s < 0)
         return fmt::format("the interval is {} s; a finite value of at least 0 is needed", description.interval_s);
-    if (const auto problem = problem_with("the noise", description.sigma, n)) return problem;
-    if (const auto problem = problem_with("the quantum", description.quantum, n)) return problem;
+    if (const auto problem = problem_with_noise("the noise", description.sigma, n)) return problem;
+    if (const auto problem = problem_with_noise("the quantum", description.quantum, n)) return problem;
+    if (const auto problem = problem_with_ratio(description, n)) return problem;
     return problem_with("the range", description.range, n);
 }
 

@@ -119,6 +119,12 @@ TEST(SensorCluster, refuses_bad_noise_figures_and_counts_of_a_description)
     EXPECT_EQ(complaint([](auto&) {}), "accepted");
     EXPECT_THAT(complaint([](auto& d) { d.sigma[4] = -1; }), HasSubstr("noise of axis 4 is -1"));
     EXPECT_THAT(complaint([](auto& d) { d.quantum[2] = std::nan(""); }), HasSubstr("quantum of axis 2"));
+    EXPECT_THAT(complaint([](auto& d) { d.sigma[3] = 2.25e-105; }),
+                HasSubstr("noise of axis 3 is 2.25e-105; 0 (unknown) or 1e-15 to 1000"));
+    EXPECT_THAT(complaint([](auto& d) { d.quantum[3] = 1e200; }), HasSubstr("quantum of axis 3 is 1e+200"));
+    EXPECT_THAT(complaint([](auto& d) { d.sigma[3] = 8e-13; }), HasSubstr("more than 1e+06 times the noise"));
+    EXPECT_THAT(complaint([](auto& d) { d.quantum[3] = 9; }), HasSubstr("more than 1e+06 times the noise"));
+    EXPECT_EQ(complaint([](auto& d) { d.sigma[3] = 9e-12, d.quantum[3] = 1e-15, d.sigma[8] = 0; }), "accepted");
     EXPECT_THAT(complaint([](auto& d) { d.range[0] = std::numeric_limits<double>::infinity(); }), HasSubstr("range of axis 0"));
     EXPECT_THAT(complaint([](auto& d) { d.interval_s = std::nan(""); }), HasSubstr("interval"));
     EXPECT_THAT(complaint([](auto& d) { d.axis_count = 25; }), HasSubstr("at most 24"));

@@ -21,6 +21,8 @@ struct Field {
     const char* name;
     Type Message::*member;
 };
+template <class Message, class Type>
+Field(const char*, Type Message::*) -> Field<Message, Type>;  // clang before 17 deduces nothing for an aggregate by itself
 
 /// All members of a message in the order of the wire: what echo prints, tests fill and compare, and the vendors' types are checked against.
 template <class Message>
