@@ -134,6 +134,25 @@ class SharedMemory(ProcessTest):
         for name in ("fdi-a", "attitude-a", "fdi-b", "voter-1"):
             self.assertNotIn("was asked for", self.log(name))
 
+    def test_systems_of_two_domains_share_one_daemon_and_nothing_else(self):
+        """A reader that is handed another domain's samples goes deaf after 256 of them."""
+        self.start_roudi()
+        own_directory = self.run_directory / "other"
+        own_directory.mkdir()
+        short = ("--set", "source.duration_s=4", "--set", "source.faults=[]", "--set", "expect={final_error_rad: 1.0e-5}")
+        systems = []
+        for domain, directory in ((self.domain, self.run_directory), (self.domain + 1, own_directory)):
+            command = self.command("quorient", "launch", DEMO, "--domain", domain, "--json", *MIXED, *short)
+            environment = {**self.environment, "QUORIENT_RUN_DIR": str(directory)}
+            systems.append(subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True))
+        self.processes += systems
+        for system in systems:
+            stdout, _ = system.communicate(timeout=60)
+            summary = json.loads(stdout[stdout.index("{"):])
+            self.assertEqual(system.returncode, 0, summary["unmet"])
+            frames = {name: lane["frames"] for name, lane in summary["lanes"].items()}
+            self.assertGreaterEqual(min(frames.values()), 600, frames)  # of 800, and at most about 450 where they are deaf
+
     @unittest.skipUnless(os.geteuid() == 0, "capturing on loopback needs root")
     def test_samples_lie_in_the_segment_and_not_on_the_network(self):
         self.start_roudi()

@@ -13,6 +13,8 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <functional>
 
 namespace quorient::bus {
 
@@ -104,6 +106,13 @@ std::uint64_t roudi_life()
     // The inode's number may be given again; the time of its making is not.
     constexpr std::uint64_t second_ns = 1'000'000'000;
     return static_cast<std::uint64_t>(socket.st_ctim.tv_sec) * second_ns + static_cast<std::uint64_t>(socket.st_ctim.tv_nsec);
+}
+
+std::array<std::uint64_t, 2> roudi_identity()
+{
+    std::string boot;
+    std::getline(std::ifstream{"/proc/sys/kernel/random/boot_id"}, boot);
+    return {std::hash<std::string>{}(boot), roudi_life()};
 }
 
 std::string roudi_configuration(std::size_t writers, std::size_t readers)

@@ -273,6 +273,23 @@ private:
 /// Of one host and domain, by RTPS's ports [RTPS 9.6.1.1]. Unicast discovery knocks at each of them, so it looks for fewer.
 constexpr std::uint32_t most_participants = 119;
 
+/// Cyclone DDS 0.10 takes every node with the same MAC address for one that shares its memory, and gives each topic's name to iceoryx
+/// without its domain. A reader is then handed the samples of other domains too; it can do nothing with them, does not give them back, and
+/// is deaf after 256. So the name has the domain here, and the address (16 octets) stands for the daemon: with any other node it goes by
+/// UDP.
+std::string shared_memory(std::uint32_t domain, bool shared)
+{
+    if (!shared) return "<SharedMemory><Enable>false</Enable></SharedMemory>";
+    std::string address;
+    for (const auto part : roudi_identity()) {
+        for (unsigned octet = 0; octet < 8; ++octet)
+            address += fmt::format("{}{:02x}", address.empty() ? "" : ":", part >> (8 * octet) & 0xffU);
+    }
+    return fmt::format(
+        "<SharedMemory><Enable>true</Enable><Locator>{}</Locator><Prefix>quorient_{}</Prefix><LogLevel>warn</LogLevel></SharedMemory>",
+        address, domain);
+}
+
 /// As Cyclone wants it. GenerateKeyhash: without it Fast DDS does not see a Cyclone endpoint leave. The short heartbeat and
 /// nack delays repair a lost sample before anybody's patience ends.
 std::string configuration(const Settings& settings, bool shared)
@@ -291,9 +308,10 @@ std::string configuration(const Settings& settings, bool shared)
         "<Discovery>{}<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>{}</MaxAutoParticipantIndex></Discovery>"
         "<Internal><GenerateKeyhash>true</GenerateKeyhash><NackDelay>1ms</NackDelay>"
         "<HeartbeatInterval min=\"1ms\" minsched=\"2ms\" max=\"100ms\">{}us</HeartbeatInterval></Internal>"
-        "<SharedMemory><Enable>{}</Enable><LogLevel>warn</LogLevel></SharedMemory></Domain></CycloneDDS>",
+        "{}</Domain></CycloneDDS>",
         interface, !unicast, unicast ? fmt::format("<Peers>{}</Peers>", peers) : std::string{},
-        unicast ? settings.participants_per_host - 1 : most_participants, static_cast<long>(heartbeat_s(settings) * 1e6), shared);
+        unicast ? settings.participants_per_host - 1 : most_participants, static_cast<long>(heartbeat_s(settings) * 1e6),
+        shared_memory(settings.domain, shared));
 }
 
 }  // namespace

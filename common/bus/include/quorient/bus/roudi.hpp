@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -15,6 +16,9 @@ std::string roudi_silence();
 
 /// Tells one life of the daemon from another; 0 when it does not answer.
 std::uint64_t roudi_life();
+
+/// The same in all processes that share this life of the daemon, another one with any other daemon of any host: the host's boot, and the life.
+std::array<std::uint64_t, 2> roudi_identity();
 
 /// What a sample takes in a memory pool, in bytes: with iceoryx's and Cyclone DDS's headers, as the pools are sized.
 std::size_t chunk_size(std::size_t sample);
