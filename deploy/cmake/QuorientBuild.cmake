@@ -62,11 +62,13 @@ function(quorient_test name)
   endif()
   if(QUORIENT_SANITIZE)
     math(EXPR arg_TIMEOUT "5 * ${arg_TIMEOUT}")
-    list(APPEND arg_ENVIRONMENT TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/deploy/sanitizers/thread.supp)
+    # Not beside it in ENVIRONMENT: gtest_discover_tests takes a list apart and keeps its first variable alone.
+    set(sanitizer_environment ENVIRONMENT_MODIFICATION TSAN_OPTIONS=set:suppressions=${PROJECT_SOURCE_DIR}/deploy/sanitizers/thread.supp)
   endif()
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_DEPENDS} GTest::gtest GTest::gmock GTest::gtest_main quorient_warnings)
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT ${arg_TIMEOUT} ENVIRONMENT "${arg_ENVIRONMENT}")
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT ${arg_TIMEOUT} ${sanitizer_environment}
+    ENVIRONMENT "${arg_ENVIRONMENT}")
 endfunction()
 
 # quorient_benchmark(NAME SOURCES a.cpp … [DEPENDS target …]): a Google Benchmark program; never a test.

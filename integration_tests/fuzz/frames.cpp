@@ -1,6 +1,7 @@
 #include "bytes.hpp"
 #include "quorient/attitude/integrator.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
+#include "quorient/fdi/make_detector.hpp"
 #include "quorient/runtime/frame_intake.hpp"
 #include "quorient/runtime/intake_report.hpp"
 #include "require.hpp"
@@ -8,6 +9,8 @@
 
 #include <cmath>
 #include <optional>
+#include <string>
+#include <utility>
 
 namespace quorient::fuzz {
 
@@ -16,19 +19,23 @@ namespace {
 constexpr std::uint32_t unit = 1;
 constexpr std::int64_t interval_ns = 5'000'000;
 
+/// Up to eight axes on a cone; nine are three triads.
 ClusterDescription description(std::uint64_t epoch, std::uint8_t axes)
 {
+    const std::size_t axes_of_instrument = axes > 8 ? 3 : 1;
     ClusterDescription made;
     made.epoch = epoch;
     made.revision = 1;
     made.unit = unit;
     made.kind = static_cast<std::uint8_t>(SensorKind::gyro);
-    made.axis_count = made.instrument_count = axes;
+    made.axis_count = axes;
+    made.instrument_count = static_cast<std::uint8_t>(axes / axes_of_instrument);
     made.interval_s = 0.005;
     for (std::size_t axis = 0; axis < axes; ++axis) {
         const double azimuth = 2 * 3.14159265358979 * static_cast<double>(axis) / axes;
         made.axis[axis] = {std::sqrt(2.0 / 3) * std::cos(azimuth), std::sqrt(2.0 / 3) * std::sin(azimuth), std::sqrt(1.0 / 3)};
-        made.instrument[axis] = static_cast<std::uint8_t>(axis);
+        if (axes_of_instrument == 3) made.axis[axis] = {axis % 3 == 0 ? 1.0 : 0.0, axis % 3 == 1 ? 1.0 : 0.0, axis % 3 == 2 ? 1.0 : 0.0};
+        made.instrument[axis] = static_cast<std::uint8_t>(axis / axes_of_instrument);
         made.sigma[axis] = 1e-6;
     }
     return made;
@@ -37,7 +44,12 @@ ClusterDescription description(std::uint64_t epoch, std::uint8_t axes)
 /// What stands behind the intake in the two processes of a lane.
 class Lane {
 public:
-    explicit Lane(const char* method) { detection_.method = method; }
+    Lane(std::string method, std::string algorithm)
+    {
+        detection_.method = std::move(method);
+        integration_.algorithm = std::move(algorithm);
+        integration_.history_s = 0.5;
+    }
 
     void prepare(const ClusterDescription& described)
     {
@@ -46,9 +58,7 @@ public:
         const auto cluster = geometry::make_cluster(described);
         if (!cluster) return;
         if (auto made = fdi::FaultMonitor::make(detection_, {}, *cluster)) monitor_ = std::move(*made);
-        attitude::IntegratorSettings settings;
-        settings.history_s = 0.5;
-        if (auto made = attitude::Integrator::make(settings, *cluster)) integrator_.emplace(std::move(*made));
+        if (auto made = attitude::Integrator::make(integration_, *cluster)) integrator_.emplace(std::move(*made));
     }
 
     void handle(const SensorFrame& frame)
@@ -71,6 +81,7 @@ public:
 
 private:
     fdi::DetectorSettings detection_;
+    attitude::IntegratorSettings integration_;
     std::optional<fdi::FaultMonitor> monitor_;
     std::optional<attitude::Integrator> integrator_;
 };
@@ -80,9 +91,11 @@ private:
 void frames(const std::uint8_t* data, std::size_t size)
 {
     Bytes bytes{data, size};
-    constexpr std::array methods{"auto", "subset", "glt"};
-    const auto axes = static_cast<std::uint8_t>(3 + bytes.below(6));
-    Lane lane{methods[bytes.below(methods.size())]};
+    constexpr std::array<std::uint8_t, 7> axis_counts{3, 4, 5, 6, 7, 8, 9};
+    constexpr std::array algorithms{"window-10", "block-4", "previous", "four-sample"};
+    const auto axes = axis_counts[bytes.below(axis_counts.size())];
+    const auto& method = fdi::methods()[bytes.below(static_cast<std::uint32_t>(fdi::methods().size()))].name;
+    Lane lane{std::string{method}, algorithms[bytes.below(algorithms.size())]};
     runtime::FrameIntake intake{unit, SensorKind::gyro};
     std::uint64_t epoch = 1, sequence = 0;
     std::int64_t now = 0;

@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <random>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -58,53 +59,90 @@ void say_which_input_ends_it()
     for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGALRM}) ::sigaction(signal, &action, nullptr);
 }
 
-/// So many inputs, or more for as long as QUORIENT_FUZZ_SECONDS; the first one is number QUORIENT_FUZZ_SEED.
-void run(void (*target)(const std::uint8_t*, std::size_t), std::uint64_t inputs, std::size_t longest)
+using Input = std::vector<std::uint8_t>;
+
+/// What libFuzzer kept (libfuzzer.py --keep): one input per line, hexadecimal.
+std::vector<Input> corpus_of(const std::string& target)
 {
+    std::ifstream file{std::string{QUORIENT_SOURCE_DIR} + "/integration_tests/fuzz/corpus/" + target + ".txt"};
+    std::vector<Input> inputs;
+    for (std::string line; std::getline(file, line);) {
+        Input input(line.size() / 2);
+        for (std::size_t i = 0; i < input.size(); ++i) input[i] = static_cast<std::uint8_t>(std::stoul(line.substr(2 * i, 2), nullptr, 16));
+        inputs.push_back(std::move(input));
+    }
+    return inputs;
+}
+
+/// First the corpus as it stands; then in turn random bytes, and two inputs of the corpus with a few bytes damaged.
+void make_input(std::uint64_t seed, const std::vector<Input>& corpus, std::size_t longest, Input& input)
+{
+    if (seed < corpus.size()) {
+        input = corpus[seed];
+        return;
+    }
+    std::mt19937_64 random{seed};
+    if (seed % 2 == 0) {
+        input.resize(1 + random() % longest);
+        for (auto& byte : input) byte = static_cast<std::uint8_t>(random());
+        return;
+    }
+    input = corpus[random() % corpus.size()];
+    const Input& more = corpus[random() % corpus.size()];
+    input.insert(input.end(), more.begin(), more.end());
+    for (auto times = random() % 8; times > 0; --times) input[random() % input.size()] = static_cast<std::uint8_t>(random());
+}
+
+/// The corpus and so many inputs, or more for as long as QUORIENT_FUZZ_SECONDS; the first one is number QUORIENT_FUZZ_SEED.
+void run(const char* name, void (*target)(const std::uint8_t*, std::size_t), std::uint64_t inputs, std::size_t longest)
+{
+    const std::vector<Input> corpus = corpus_of(name);
+    ASSERT_FALSE(corpus.empty()) << "no corpus " << name;
+    inputs += corpus.size();
+    const std::uint64_t warm = inputs / 2;
     using Clock = std::chrono::steady_clock;
     const auto begin = Clock::now();
     const auto end = begin + std::chrono::seconds{number_from("QUORIENT_FUZZ_SECONDS")};
     const std::uint64_t first = number_from("QUORIENT_FUZZ_SEED");
-    std::vector<std::uint8_t> input(longest);
+    Input input;
+    input.reserve(longest);
     std::uint64_t done = 0;
     std::size_t warm_kb = 0;
     say_which_input_ends_it();
     for (; done < inputs || Clock::now() < end; ++done) {
         const std::uint64_t seed = first + done;
         name_input(seed);
-        std::mt19937_64 random{seed};
-        input.resize(1 + random() % longest);
-        for (auto& byte : input) byte = static_cast<std::uint8_t>(random());
+        make_input(seed, corpus, longest, input);
         target(input.data(), input.size());
-        if (done == inputs / 4) warm_kb = resident_kb();
+        if (done == warm) warm_kb = resident_kb();
     }
     ::alarm(0);
     const double took_s = std::chrono::duration<double>(Clock::now() - begin).count();
     const auto last_kb = resident_kb();
     std::printf("%llu executions from input %llu, %.0f/s, %zu KiB at the end, %+lld since input %llu\n",
                 static_cast<unsigned long long>(done), static_cast<unsigned long long>(first), static_cast<double>(done) / took_s, last_kb,
-                static_cast<long long>(last_kb) - static_cast<long long>(warm_kb), static_cast<unsigned long long>(first + inputs / 4));
+                static_cast<long long>(last_kb) - static_cast<long long>(warm_kb), static_cast<unsigned long long>(first + warm));
     EXPECT_LT(last_kb, warm_kb + 4096) << "it grows";
 }
 
 TEST(Fuzz, frames_and_descriptions_of_any_kind_break_no_promise_of_detector_and_integrator)
 {
-    run(frames, 300, 6000);
+    run("frames", frames, 300, 6000);
 }
 
 TEST(Fuzz, attitudes_verdicts_and_voters_of_any_kind_break_no_promise_of_the_voter)
 {
-    run(votes, 600, 3000);
+    run("votes", votes, 600, 3000);
 }
 
 TEST(Fuzz, imu_messages_of_any_kind_give_finite_frames_in_order)
 {
-    run(imus, 300, 6000);
+    run("imus", imus, 300, 6000);
 }
 
 TEST(Fuzz, bytes_of_any_kind_are_decoded_or_refused)
 {
-    run(decode, 3000, 4096);
+    run("decode", decode, 3000, 4096);
 }
 
 }  // namespace

@@ -18,12 +18,15 @@ constexpr double range_tolerance = 1.0 + 1e-9;
 /// A description may come a little after its first frames; one that stays away so long is missing.
 constexpr std::int64_t description_patience_ns = 500'000'000;
 
+/// Sample times count in nanoseconds, and ratios of intervals stay within what a double holds.
+constexpr double shortest_interval_s = 1e-9;
+
 /// Longer than any sensor waits; in nanoseconds it is still far from the end of the integers.
 constexpr double longest_interval_s = 3600;
 
 bool is_interval(double interval_s)
 {
-    return interval_s > 0 && interval_s <= longest_interval_s;
+    return interval_s >= shortest_interval_s && interval_s <= longest_interval_s;
 }
 
 /// One frame that is not newer is the network's doing; so many without a newer one in between are a publisher that counts again.
@@ -37,7 +40,7 @@ const char* FrameIntake::problem_of(const ClusterDescription& description)
     const bool channels = description.kind == static_cast<std::uint8_t>(SensorKind::vessel_rates);
     if (description.axis_count < (channels ? 1 : 3) || description.axis_count > max_axes)
         return channels ? "it must have 1 to 24 channels" : "it must have 3 to 24 axes";
-    if (!is_interval(description.interval_s)) return "its interval must be above 0 s and at most an hour";
+    if (!is_interval(description.interval_s)) return "its interval must be 1 ns to an hour";
     return nullptr;
 }
 

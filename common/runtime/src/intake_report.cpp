@@ -16,7 +16,7 @@ std::string words_for(const FrameIntake::Complaint& complaint)
         case Fault::axis_count:
             return fmt::format("frame {} has {} axes, its description {}", identity.sequence, got, expected);
         case Fault::interval:
-            return fmt::format("frame {}: its interval must be above 0 s and at most an hour", identity.sequence);
+            return fmt::format("frame {}: its interval must be 1 ns to an hour", identity.sequence);
         case Fault::sample_time:
             return fmt::format(
                 "frame {}: its sample time is not after that of the frame before, or farther than 146 years from its clock's origin",

@@ -187,8 +187,11 @@ TEST_F(Intake, refuses_frames_with_a_wrong_axis_count_interval_or_time)
     bad = frame(1, 6);
     bad.interval_s = 1e300;
     EXPECT_FALSE(passes(bad));
-    EXPECT_TRUE(passes(frame(1, 7)));
-    EXPECT_EQ(intake.counters().rejected_frames, 6U);
+    bad = frame(1, 7);
+    bad.interval_s = std::numeric_limits<double>::denorm_min();
+    EXPECT_FALSE(passes(bad));
+    EXPECT_TRUE(passes(frame(1, 8)));
+    EXPECT_EQ(intake.counters().rejected_frames, 7U);
 }
 
 TEST_F(Intake, does_not_take_a_foreign_description_for_its_own)
