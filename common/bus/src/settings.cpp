@@ -21,7 +21,8 @@ constexpr std::array shared_memory_words{std::pair{SharedMemory::required, "requ
                                          std::pair{SharedMemory::off, "off"}};
 
 constexpr double loopback_ratio = 8;
-constexpr double longest_loopback_s = 0.1;  // a sample lost to a full buffer, at the end of a stream
+constexpr double shortest_loopback_s = 0.02;  // above 200 Hz the answers of nine processes would fill two cores
+constexpr double longest_loopback_s = 0.1;    // a sample lost to a full buffer, at the end of a stream
 
 bool is_loopback(std::string_view interface)
 {
@@ -77,7 +78,7 @@ std::string_view to_string(Transport transport)
 double heartbeat_s(const Settings& settings)
 {
     if (!is_loopback(settings.interface)) return settings.heartbeat_s;
-    return std::clamp(loopback_ratio * settings.heartbeat_s, settings.heartbeat_s, std::max(settings.heartbeat_s, longest_loopback_s));
+    return std::max(settings.heartbeat_s, std::clamp(loopback_ratio * settings.heartbeat_s, shortest_loopback_s, longest_loopback_s));
 }
 
 std::vector<std::string> problems(const Settings& settings)

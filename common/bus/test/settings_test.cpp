@@ -33,6 +33,8 @@ TEST(BusSettings, ask_for_acknowledgements_more_rarely_on_loopback_than_on_a_net
     EXPECT_DOUBLE_EQ(heartbeat_s(settings), 0.0025);
     settings.interface = "lo";
     EXPECT_DOUBLE_EQ(heartbeat_s(settings), 0.02);
+    settings.heartbeat_s = 0.0005;
+    EXPECT_DOUBLE_EQ(heartbeat_s(settings), 0.02);
     settings.heartbeat_s = 0.05;
     EXPECT_DOUBLE_EQ(heartbeat_s(settings), 0.1);
     settings.heartbeat_s = 0.5;

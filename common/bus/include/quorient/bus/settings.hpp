@@ -42,7 +42,7 @@ std::string_view to_string(Transport transport);
 
 /// How often a reliable writer asks its readers what they lack. On a network as the settings say, so that a lost sample is repaired before
 /// anybody's patience ends; every sample is then acknowledged by every reader. Loopback loses nothing but to a full socket buffer, and
-/// there the acknowledgements would cost more than the samples: eight times as rarely.
+/// there the acknowledgements would cost more than the samples: eight times as rarely, and at most 50 times a second.
 double heartbeat_s(const Settings& settings);
 
 /// Everything that can be told wrong before a participant exists: domain above 230, no such interface, a peer that is no address,
