@@ -23,11 +23,10 @@ import table
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 BIN = pathlib.Path(os.environ.get("QUORIENT_BIN", ROOT / "build/release/bin"))
-TICK_S = 1 / os.sysconf("SC_CLK_TCK")
 PAGE_MIB = os.sysconf("SC_PAGE_SIZE") / 2**20
 PING_PATIENCE_S = 60  # all rounds of one pair of processes; they take some seconds
 START_PATIENCE_S = 15
-DOMAINS = 8  # used in turns: the one before may still be saying goodbye
+DOMAINS = 16  # used in turns: the one before may still be saying goodbye
 FLOORS = ("floor", "floor_that_waits")
 
 # Name -> the keys of the system file for sensor, lanes and voters in turn, and the floor's arguments.
@@ -82,11 +81,12 @@ class Usage:
         found = {}
         for name, process in self.processes.items():
             try:
-                fields = pathlib.Path(f"/proc/{process.pid}/stat").read_text().rsplit(")", 1)[1].split()
+                # To the nanosecond: most threads run for less than a clock tick at a time, which /proc/PID/stat seldom sees.
+                threads = [int(file.read_text().split()[0]) for file in pathlib.Path(f"/proc/{process.pid}/task").glob("*/schedstat")]
                 pages = int(pathlib.Path(f"/proc/{process.pid}/statm").read_text().split()[1])
             except (FileNotFoundError, ProcessLookupError):
                 continue
-            found[name] = ((int(fields[11]) + int(fields[12])) * TICK_S, pages * PAGE_MIB)
+            found[name] = (sum(threads) * 1e-9, pages * PAGE_MIB)
         return found
 
     def end(self):
@@ -307,7 +307,8 @@ def growth(runner):
     results = runner.in_turns([{**base, "lanes": lanes} for lanes in (1, 3, 5, 7)], rounds, FLOORS[:1])
     results += runner.in_turns([{**base, "axes": axes} for axes in LAYOUTS], rounds, ())
     units = {**base, "lanes": 1, "voters": 1}
-    results += runner.in_turns([{**units, "units": 1}, {**units, "units": 4}, {**units, "units": 4, "own_domains": True}, {**units, "units": 16}], rounds, ())
+    counts = [{"units": 1}, {"units": 4}, {"units": 4, "own_domains": True}, {"units": 16}, {"units": 16, "own_domains": True}]
+    results += runner.in_turns([{**units, **count} for count in counts], rounds, ())
     return results
 
 
@@ -339,7 +340,7 @@ def parse():
     parser.add_argument("--minute", type=float, default=60, help="seconds of the long run at 1 kHz")
     parser.add_argument("--pings", type=int, default=1000, help="of each path in each round")
     parser.add_argument("--limit", type=float, default=20, help="minutes after which what is left is left out, and named")
-    parser.add_argument("--domain", type=int, default=30, help="this one and the nine after it")
+    parser.add_argument("--domain", type=int, default=30, help="this one and the seventeen after it")
     parser.add_argument("--out", type=pathlib.Path, default=HERE.parent / "results/latency", help="NAME: writes NAME.json and NAME.md")
     options = parser.parse_args()
     if options.quick:
