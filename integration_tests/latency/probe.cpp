@@ -72,12 +72,15 @@ nlohmann::json report(const std::vector<Record>& records, std::uint64_t skipped,
     }
     std::uint64_t frames = 0;
     std::uint64_t lost = 0;
+    std::uint64_t before = 0;  // the probe found the voters: not theirs to answer for
     for (const auto& [unit, of_unit] : sequences) {
         frames += of_unit.size();
         lost += *of_unit.rbegin() - *of_unit.begin() + 1 - of_unit.size();
+        before += *of_unit.begin() - skipped;
     }
     result["frames"] = frames;
     result["lost"] = lost;
+    result["before_the_probe"] = before;
     result["duplicates"] = duplicates;
     result["late"] = late;
     result["sent"] = sent;

@@ -192,7 +192,7 @@ class Runner:
         report = json.loads(probe.stdout.read())
         report["processes"] = used
         whole = int(round(seconds * case["rate_hz"])) * heard
-        report["expected"] = whole - skip * heard
+        report["expected"] = whole - skip * heard - report["before_the_probe"]
         report["never_sent"] = whole - report["sent"] if report["sent"] else 0
         return report
 
