@@ -1,15 +1,16 @@
 #include "detection_cells.hpp"
 
+#include "parallel.hpp"
 #include "px4_rule.hpp"
+#include "quorient/fdi/accumulating.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
-#include <atomic>
 #include <boost/random/uniform_int_distribution.hpp>
 #include <cassert>
 #include <cmath>
-#include <mutex>
+#include <numbers>
 #include <random>
-#include <thread>
 
 namespace quorient::lab {
 
@@ -42,14 +43,6 @@ Trial drawn(const RecordedArray& array, const Cell& cell, const std::vector<std:
     return trial;
 }
 
-double median(std::vector<double> values)
-{
-    if (values.empty()) return std::nan("");
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 Reactions summed(const std::vector<TrialResult>& results, Reaction TrialResult::*method)
 {
     Reactions sum;
@@ -67,7 +60,8 @@ Reactions summed(const std::vector<TrialResult>& results, Reaction TrialResult::
         if (right) sum.slowest_isolated_s = std::max(sum.slowest_isolated_s, reaction.isolated_s);
     }
     sum.median_detected_s = median(std::move(detected));
-    sum.median_isolated_s = median(std::move(isolated));
+    sum.median_isolated_s = median(isolated);
+    sum.isolated_s = std::move(isolated);
     return sum;
 }
 
@@ -89,27 +83,15 @@ CellResult summed(const std::vector<TrialResult>& results)
     return cell;
 }
 
-/// Calls task(i) for every i below count, on all cores.
-void for_each(std::size_t count, const RunSettings& settings, const OnProgress& on_progress, const std::function<void(std::size_t)>& task)
-{
-    std::atomic<std::size_t> next{0};
-    std::size_t done = 0;
-    std::mutex mutex;
-    const auto work = [&] {
-        for (std::size_t i = next++; i < count; i = next++) {
-            task(i);
-            const std::scoped_lock lock(mutex);
-            ++done;
-            if (on_progress) on_progress(done, count);
-        }
-    };
-    const unsigned threads = settings.threads != 0 ? settings.threads : std::max(1U, std::thread::hardware_concurrency());
-    std::vector<std::jthread> helpers;
-    for (unsigned k = 1; k < threads; ++k) helpers.emplace_back(work);
-    work();
-}
-
 }  // namespace
+
+double median(std::vector<double> values)
+{
+    if (values.empty()) return std::nan("");
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
 
 fdi::FaultMonitor accumulating(const RecordedArray& array, bool instruments, double factor)
 {
@@ -119,6 +101,27 @@ fdi::FaultMonitor accumulating(const RecordedArray& array, bool instruments, dou
     auto monitor = fdi::FaultMonitor::make(settings, fdi::VerdictSettings{}, array.cluster);
     assert(monitor);  // recorded arrays have three instruments or more, with noise and interval
     return std::move(*monitor);
+}
+
+fdi::FaultMonitor accumulating_with(const RecordedArray& array, bool instruments, const fdi::MotionNoise& noise)
+{
+    fdi::DetectorSettings settings{.method = "accumulating"};
+    settings.instruments = instruments;
+    auto detector = fdi::Accumulating::make(settings, array.cluster, noise);
+    assert(detector);
+    return fdi::FaultMonitor::make(std::move(*detector), fdi::VerdictSettings{}, array.cluster).value();
+}
+
+std::vector<Cell> violent_steps(std::size_t array, std::span<const double> sizes_deg_s)
+{
+    std::vector<Cell> cells;
+    for (const double size : sizes_deg_s) {
+        simulation::FaultSpec fault;
+        fault.kind = FaultKind::bias;
+        fault.value = size * std::numbers::pi / 180;
+        cells.push_back({array, true, true, fmt::format("{:g} deg/s", size), fault});
+    }
+    return cells;
 }
 
 std::vector<CellResult> play_cells(const std::vector<RecordedArray>& arrays, const std::vector<Cell>& cells, const MonitorOf& monitor_of,

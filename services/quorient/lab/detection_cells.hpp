@@ -2,7 +2,9 @@
 
 #include "detection_trial.hpp"
 #include "monte_carlo.hpp"
+#include "quorient/fdi/motion_noise.hpp"
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,9 +25,10 @@ struct Reactions {
     std::size_t wrong = 0;
     std::size_t ambiguous = 0;
     std::size_t missed = 0;
-    double median_detected_s = 0;   ///< over all trials; infinite where most were not detected
-    double median_isolated_s = 0;   ///< over all trials, those not right as infinite
-    double slowest_isolated_s = 0;  ///< of those that are right
+    double median_detected_s = 0;    ///< over all trials; infinite where most were not detected
+    double median_isolated_s = 0;    ///< over all trials, those not right as infinite
+    double slowest_isolated_s = 0;   ///< of those that are right
+    std::vector<double> isolated_s;  ///< of every trial, in their order; those not right as infinite
 };
 
 struct CellResult {
@@ -52,6 +55,15 @@ struct HealthyRun {
 
 /// The product's detector for arrays, `accumulating`, with the motion noise that the other recording shows times `factor`.
 fdi::FaultMonitor accumulating(const RecordedArray& array, bool instruments, double factor = 1);
+
+/// The same with this motion noise.
+fdi::FaultMonitor accumulating_with(const RecordedArray& array, bool instruments, const fdi::MotionNoise& noise);
+
+/// Bias steps that begin in violent motion, instruments blamed.
+std::vector<Cell> violent_steps(std::size_t array, std::span<const double> sizes_deg_s);
+
+/// The upper one of two middle values; NaN of none.
+double median(std::vector<double> values);
 
 /// How the array under test is watched.
 using MonitorOf = std::function<fdi::FaultMonitor(const RecordedArray&, bool instruments)>;

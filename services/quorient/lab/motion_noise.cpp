@@ -4,27 +4,13 @@
 
 #include <fmt/format.h>
 #include <cmath>
-#include <numbers>
 
 namespace quorient::lab {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double factors[] = {0.5, 0.7, 0.85, 1, 1.2, 1.4, 2};
 constexpr double sizes_deg_s[] = {5, 10, 22.9};
-
-std::vector<Cell> violent_cells(std::size_t array)
-{
-    std::vector<Cell> cells;
-    for (const double size : sizes_deg_s) {
-        simulation::FaultSpec fault;
-        fault.kind = FaultKind::bias;
-        fault.value = size * degree;
-        cells.push_back({array, true, true, fmt::format("{:g} deg/s", size), fault});
-    }
-    return cells;
-}
 
 std::string seconds(double value)
 {
@@ -54,7 +40,7 @@ Report motion_noise(const RunSettings& settings, const OnProgress& on_progress)
                 return accumulating(watched, instruments, factor);
             };
             const HealthyRun healthy = play_healthy(*arrays, array, true, monitor);
-            const auto cells = violent_cells(array);
+            const auto cells = violent_steps(array, sizes_deg_s);
             const auto results = play_cells(*arrays, cells, monitor, settings, {});
             const double level = (*arrays)[array].motion_noise.value_or(1);
             Json row{{"array", (*arrays)[array].name},

@@ -91,7 +91,8 @@ tl::expected<Recording, std::string> load_recording(const std::filesystem::path&
         recording.samples.push_back(cli::sample_of(frame));
         recording.sequence.push_back(sequence++);
     }
-    auto calibration = calibration::calibrate(recording.samples, (*reader)->description());
+    recording.nominal = (*reader)->description();
+    auto calibration = calibration::calibrate(recording.samples, recording.nominal);
     if (!calibration) return tl::unexpected(fmt::format("{}: {}", log.string(), calibration.error()));
     recording.calibration = std::move(*calibration);
     recording.calibration.cluster.motion_level = cli::motion_level(recording.samples, recording.calibration).value_or(0);
@@ -122,7 +123,7 @@ tl::expected<RecordedArray, std::string> corrected(const Recording& recording, c
     return array;
 }
 
-tl::expected<std::vector<RecordedArray>, std::string> load_arrays(const std::vector<std::filesystem::path>& logs)
+tl::expected<std::vector<Recording>, std::string> load_recordings(const std::vector<std::filesystem::path>& logs)
 {
     std::vector<Recording> recordings;
     for (const auto& log : logs) {
@@ -130,9 +131,15 @@ tl::expected<std::vector<RecordedArray>, std::string> load_arrays(const std::vec
         if (!recording) return tl::unexpected(recording.error());
         recordings.push_back(std::move(*recording));
     }
+    return recordings;
+}
+
+tl::expected<std::vector<RecordedArray>, std::string> cross_corrected(const std::vector<Recording>& recordings)
+{
     std::vector<RecordedArray> arrays;
     for (std::size_t i = 0; i < recordings.size(); ++i) {
-        const auto& calibration = recordings[(i + 1) % recordings.size()].calibration.cluster;
+        const std::size_t other = (i + 1) % recordings.size();
+        const auto& calibration = recordings[other].calibration.cluster;
         std::vector<std::size_t> all(calibration.description.instrument_count);
         std::iota(all.begin(), all.end(), 0);
         std::vector<std::vector<std::size_t>> sets{all};
@@ -140,10 +147,17 @@ tl::expected<std::vector<RecordedArray>, std::string> load_arrays(const std::vec
         for (const auto& set : sets) {
             auto array = corrected(recordings[i], calibration, set);
             if (!array) return tl::unexpected(array.error());
+            array->recording = i;
+            array->calibrated_by = other;
             arrays.push_back(std::move(*array));
         }
     }
     return arrays;
+}
+
+tl::expected<std::vector<RecordedArray>, std::string> load_arrays(const std::vector<std::filesystem::path>& logs)
+{
+    return load_recordings(logs).and_then(cross_corrected);
 }
 
 double RecordedArray::duration_s() const

@@ -38,11 +38,19 @@ Report detection_delay(const RunSettings& settings, const OnProgress& on_progres
 /// The same recordings without a fault and with steps in violent motion, with the detector's motion noise wrong by factors of 0.5 to 2.
 Report motion_noise(const RunSettings& settings, const OnProgress& on_progress);
 
+/// The steps in violent motion of detection_delay with five seeds from settings.seed on: how much their medians scatter.
+Report detection_seeds(const RunSettings& settings, const OnProgress& on_progress);
+
+/// The terms of the motion noise that each recording shows by itself, beside the usual ones, and what becomes of the other one with them.
+Report motion_terms(const RunSettings& settings, const OnProgress& on_progress);
+
 inline constexpr std::uint64_t isolation_trials = 100'000;
 inline constexpr std::uint64_t paper_002_trials = 400'000;
 inline constexpr std::uint64_t ceiling_trials = 200'000;
 inline constexpr std::uint64_t vessel_trials = 100;
 inline constexpr std::uint64_t detection_delay_trials = 60;
 inline constexpr std::uint64_t motion_noise_trials = 30;
+inline constexpr std::uint64_t detection_seeds_trials = 60;  // with each seed
+inline constexpr std::uint64_t motion_terms_trials = 60;
 
 }  // namespace quorient::lab

@@ -1,5 +1,6 @@
 #include "lab/detection_cells.hpp"
 #include "lab/px4_rule.hpp"
+#include "lab/study.hpp"
 #include "quorient/geometry/layouts.hpp"
 
 #include <gtest/gtest.h>
@@ -126,7 +127,8 @@ protected:
     {
         const auto folder = data_dir() / "mimu4444_carlsson";
         if (!std::filesystem::exists(folder)) return;
-        arrays = load_arrays({folder / "exp_1" / "data.bin", folder / "exp_2" / "data.bin"}).value();
+        logs = {folder / "exp_1" / "data.bin", folder / "exp_2" / "data.bin"};
+        arrays = load_arrays(logs).value();
     }
 
     void SetUp() override
@@ -136,7 +138,7 @@ protected:
 
     static fdi::FaultMonitor watched(const RecordedArray& array, bool instruments) { return accumulating(array, instruments); }
 
-    CellResult cell(std::size_t array, bool moving, double bias_deg_s, std::size_t trials) const
+    CellResult cell(std::size_t array, bool moving, double bias_deg_s, std::size_t trials, std::uint64_t seed = 1) const
     {
         Cell cell;
         cell.array = array;
@@ -145,9 +147,11 @@ protected:
         cell.fault.value = bias_deg_s * degree;
         RunSettings settings;
         settings.trials = trials;
+        settings.seed = seed;
         return play_cells(arrays, {cell}, watched, settings, {}).front();
     }
 
+    static inline std::vector<std::filesystem::path> logs;
     static inline std::vector<RecordedArray> arrays;
 };
 
@@ -177,6 +181,28 @@ TEST_F(RealRecordings, show_a_field_fault_in_violent_motion_within_half_a_second
         EXPECT_LE(result.ours.median_isolated_s, 0.5) << arrays[array].name;
         EXPECT_LT(result.ours.median_isolated_s, result.px4.median_isolated_s) << arrays[array].name;
     }
+}
+
+TEST_F(RealRecordings, played_with_several_seeds_have_the_median_of_all_trials_together)
+{
+    RunSettings settings;
+    settings.trials = 1;
+    settings.seed = 11;
+    settings.logs = logs;
+    const Report report = detection_seeds(settings, {});
+    ASSERT_EQ(report.json["rows"].size(), 3 * arrays.size());
+    for (const auto& row : report.json["rows"]) {
+        auto medians = row["medians_s"].get<std::vector<double>>();
+        ASSERT_EQ(medians.size(), 5U);
+        std::sort(medians.begin(), medians.end());
+        EXPECT_EQ(row["pooled_median_s"], medians[2]) << row;
+        EXPECT_EQ(row["right"], 5) << row;
+        EXPECT_GE(row["interval_s"][0], medians.front());
+        EXPECT_LE(row["interval_s"][0], medians[2]);
+        EXPECT_LE(row["interval_s"][1], medians.back());
+        EXPECT_GE(row["interval_s"][1], medians[2]);
+    }
+    EXPECT_EQ(report.json["rows"][2]["medians_s"][3], cell(0, true, 22.9, 1, 14).ours.median_isolated_s) << "seed 14 alone";
 }
 
 }  // namespace
