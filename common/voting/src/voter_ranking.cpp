@@ -29,7 +29,8 @@ VoterRanking::VoterRanking(const VoterSettings& settings)
     : unit_(settings.unit),
       lease_ns_(nanoseconds(settings.lease_s)),
       coasting_interval_ns_(nanoseconds(settings.coasting_interval_s)),
-      good_frames_required_(settings.good_frames_before_owning)
+      good_frames_required_(settings.good_frames_before_owning),
+      listen_frames_(static_cast<unsigned>(settings.listen_s / settings.interval_s))
 {
     bool stronger = true;
     for (const std::uint32_t voter : settings.voters) {
@@ -46,6 +47,17 @@ VoterRanking::VoterRanking(const VoterSettings& settings)
 bool VoterRanking::has_heard() const
 {
     return std::any_of(others_.begin(), others_.end(), [](const Other& other) { return other.heard; });
+}
+
+bool VoterRanking::has_heard_stronger() const
+{
+    return std::any_of(others_.begin(), others_.end(), [](const Other& other) { return other.stronger && other.heard; });
+}
+
+bool VoterRanking::established() const
+{
+    const bool has_looked_up = !has_stronger() || has_heard_stronger() || listened_ >= listen_frames_;
+    return has_looked_up && good_frames_ >= good_frames_required_;
 }
 
 bool VoterRanking::on_output(const VotedAttitude& output, std::int64_t now_ns)
@@ -135,7 +147,10 @@ std::uint64_t VoterRanking::number_beside(const Other& other, Identity identity)
 bool VoterRanking::may_write(Position position, bool repeated)
 {
     if (!established()) {
-        if (!repeated) ++good_frames_;
+        if (!repeated) {
+            ++good_frames_;
+            ++listened_;
+        }
         written_ = std::max(written_, highest_seen_);
         return false;
     }

@@ -86,6 +86,34 @@ TEST(TwoVoters, publish_the_same_in_step)
     EXPECT_FALSE(pair.weak.voter.owns());
 }
 
+TEST(TwoVoters, write_no_frame_both_while_they_have_not_found_each_other)
+{
+    Pair pair;
+    pair.strong_told = pair.weak_told = 1'000'000;  // discovery takes its time
+    pair.frames(0, 199);
+    ASSERT_EQ(pair.strong.owned.size(), 180U);
+    EXPECT_FALSE(pair.weak.voter.may_own());
+    EXPECT_TRUE(pair.weak.owned.empty());
+
+    pair.strong_told = pair.strong.outputs.size();
+    pair.weak_told = pair.weak.outputs.size();
+    pair.frames(200, 299);
+    EXPECT_TRUE(pair.weak.voter.may_own());
+    ASSERT_FALSE(pair.weak.owned.empty()) << "it stands by, for readers that lose the stronger one";
+    EXPECT_EQ(pair.weak.owned.back().sequence, 299U);
+}
+
+TEST(TwoVoters, that_never_hear_the_stronger_one_own_after_two_seconds)
+{
+    Scene weak(settings_of(3, {1, 2}, 2));
+    weak.frames(0, 399);
+    EXPECT_TRUE(weak.owned.empty());
+    weak.frames(400, 499);
+    ASSERT_FALSE(weak.owned.empty());
+    EXPECT_LE(weak.owned.front().sequence, 401U);
+    EXPECT_TRUE(weak.voter.owns());
+}
+
 TEST(TwoVoters, lose_no_frame_at_a_cold_start)
 {
     Pair pair;

@@ -23,7 +23,8 @@ struct Position {
 /// What the other voters of the unit publish, whom this one follows, and what it may write to `voted`.
 ///
 /// A voter follows the strongest fresh voter among those stronger than itself. It writes `voted` only after a number of good frames, and
-/// never steps back: when it begins to write, nothing at or below what any voter has published.
+/// never steps back: when it begins to write, nothing at or below what any voter has published. One that has never heard a stronger one
+/// first gives the two time to find each other: a reader that finds both at different moments would be given frames twice.
 class VoterRanking {
 public:
     explicit VoterRanking(const VoterSettings& settings);
@@ -63,7 +64,7 @@ public:
     /// The voter was away, or has just started.
     void start_over();
 
-    bool established() const { return good_frames_ >= good_frames_required_; }
+    bool established() const;
 
     /// Another voter is fresh and has come farther than this.
     bool is_behind(Identity identity, std::int64_t now_ns) const;
@@ -83,6 +84,7 @@ private:
         std::array<VotedAttitude, remembered> output{};  ///< by sequence
     };
 
+    bool has_heard_stronger() const;
     static std::uint64_t number_beside(const Other& other, Identity identity);
     const Other* leading(std::int64_t now_ns) const;
     bool must_hold_back(Position position) const;
@@ -95,6 +97,8 @@ private:
     std::int64_t coasting_interval_ns_;
     unsigned good_frames_required_;
     unsigned good_frames_ = 0;
+    unsigned listen_frames_;
+    unsigned listened_ = 0;   ///< good frames since the process began
     unsigned held_back_ = 0;  ///< frames since it was established that it left to a weaker voter
     bool writing_ = false;
     std::uint64_t own_sequence_ = 0;
