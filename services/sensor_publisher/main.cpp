@@ -26,7 +26,7 @@ int run(int argc, char** argv)
     runtime::EventLoop loop{**bus, clock, runtime::termination_requested()};
     sensor::SensorPublisher service{system->sensor, std::move(*source), **bus, loop};
     runtime::ask_for_realtime(system->sensor.process.realtime);
-    return loop.run();
+    return runtime::ends_within(3, loop.run());
 }
 
 }  // namespace

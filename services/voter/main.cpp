@@ -27,7 +27,7 @@ int run(int argc, char** argv)
     loop.spin(settings->process.spin);
     voter::VoterService service{*settings, **bus, loop};
     runtime::ask_for_realtime(settings->process.realtime);
-    return loop.run();
+    return runtime::ends_within(3, loop.run());
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include "quorient/runtime/signals.hpp"
 
+#include <unistd.h>
 #include <csignal>
+#include <string_view>
 
 namespace quorient::runtime {
 
@@ -14,6 +16,15 @@ void request(int)
     requested.store(true);
 }
 
+std::atomic<int> overdue_exit_code{0};
+
+void end_overdue(int)
+{
+    constexpr std::string_view text = "the bus could not be left in time: this process ends without\n";
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
+    ::_exit(overdue_exit_code);
+}
+
 }  // namespace
 
 const std::atomic<bool>& termination_requested()
@@ -24,6 +35,17 @@ const std::atomic<bool>& termination_requested()
     sigaction(SIGTERM, &action, nullptr);
     sigaction(SIGINT, &action, nullptr);
     return requested;
+}
+
+int ends_within(unsigned patience_s, int exit_code)
+{
+    overdue_exit_code = exit_code;
+    struct sigaction action {};
+    action.sa_handler = end_overdue;
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGALRM, &action, nullptr);
+    ::alarm(patience_s);
+    return exit_code;
 }
 
 }  // namespace quorient::runtime
