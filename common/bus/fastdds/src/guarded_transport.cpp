@@ -5,6 +5,7 @@
 #include <fastdds/rtps/network/SenderResource.h>
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/TransportReceiverInterface.h>
+#include <set>
 
 namespace quorient::bus::fastdds {
 
@@ -20,6 +21,31 @@ struct GuardedDescriptor final : rtps::ChainingTransportDescriptor {
     rtps::TransportInterface* create_transport() const override;
 };
 
+/// Says of each address that is about to be sent to, before it is.
+template <class Announce>
+class Announcing final : public LocatorsIterator {
+public:
+    Announcing(LocatorsIterator& locators, const Announce& announce) : locators_(locators), announce_(announce) {}
+
+    LocatorsIterator& operator++() override
+    {
+        ++locators_;
+        return *this;
+    }
+    bool operator==(const LocatorsIterator& other) const override { return locators_ == static_cast<const Announcing&>(other).locators_; }
+    bool operator!=(const LocatorsIterator& other) const override { return locators_ != static_cast<const Announcing&>(other).locators_; }
+    const Locator_t& operator*() const override
+    {
+        const Locator_t& locator = *locators_;
+        announce_(locator);
+        return locator;
+    }
+
+private:
+    LocatorsIterator& locators_;
+    const Announce& announce_;
+};
+
 class GuardedTransport final : public rtps::ChainingTransport {
 public:
     explicit GuardedTransport(const GuardedDescriptor& descriptor) : rtps::ChainingTransport(descriptor), descriptor_(descriptor) {}
@@ -29,7 +55,12 @@ public:
     bool send(eprosima::fastrtps::rtps::SenderResource* below, const octet* buffer, std::uint32_t size, LocatorsIterator* begin,
               LocatorsIterator* end, const std::chrono::steady_clock::time_point& timeout) override
     {
-        return below->send(buffer, size, begin, end, timeout);
+        const auto announce = [this](const Locator_t& locator) { know(locator); };
+        Announcing first{*begin, announce};
+        Announcing last{*end, announce};
+        LocatorsIterator* from = &first;
+        LocatorsIterator* to = &last;
+        return below->send(buffer, size, from, to, timeout);
     }
 
     void receive(rtps::TransportReceiverInterface* above, const octet* buffer, std::uint32_t size, const Locator_t& local,
@@ -39,7 +70,18 @@ public:
     }
 
 private:
+    /// Fast DDS 2.9.1 as packaged (statistics and assertions on) counts per address, and aborts on the first datagram to one for which no
+    /// channel was opened: an endpoint of a node that announces another address than that node did, be it damaged or by design
+    /// [eProsima/Fast-DDS issue 3285]. Opening one enters it; the channel itself, a socket, is not needed. Sends are serialised above.
+    void know(const Locator_t& locator)
+    {
+        if (!known_.insert(locator).second) return;
+        rtps::SendResourceList not_needed;
+        low_level_transport_->OpenOutputChannel(not_needed, locator);
+    }
+
     GuardedDescriptor descriptor_;
+    std::set<Locator_t> known_;
 };
 
 rtps::TransportInterface* GuardedDescriptor::create_transport() const

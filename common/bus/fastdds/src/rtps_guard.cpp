@@ -1,6 +1,9 @@
 #include "rtps_guard.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstring>
+#include <optional>
 
 namespace quorient::bus::fastdds {
 
@@ -22,8 +25,29 @@ constexpr std::size_t statistics_size = 56;
 /// A gap is walked number by number, and numbers that are not the next expected are kept one by one. Writers here keep far fewer samples.
 constexpr std::int64_t longest_gap = 65'536;
 
-/// Memory for the whole sample is taken on its first fragment. Samples here are far smaller.
-constexpr std::uint32_t largest_sample = 1'048'576;
+/// Memory for the whole sample is taken on its first fragment. Samples here are far smaller: any fits in one datagram.
+constexpr std::uint32_t largest_sample = 65'536;
+
+/// Of a writer that describes participants and endpoints [RTPS 9.3.1.5], and of its data's form: a list of parameters.
+constexpr std::uint8_t builtin_entity = 0xc0;
+constexpr std::uint8_t parameter_list_big_endian = 0x02;
+constexpr std::uint8_t parameter_list_little_endian = 0x03;
+constexpr std::uint16_t must_understand = 0x4000;
+
+/// A parameter that begins with how many elements follow, and the least that one takes [RTPS 9.6.3.2, DDS-XTypes 7.6.3.1.1].
+struct Counted {
+    std::uint16_t id;
+    std::size_t element_size;
+};
+constexpr std::array counted_parameters{
+    Counted{0x0029, 4},  // partition: strings
+    Counted{0x002c, 1},  // user data
+    Counted{0x002d, 1},  // group data
+    Counted{0x002e, 1},  // topic data
+    Counted{0x0059, 8},  // properties: pairs of strings
+    Counted{0x0073, 2},  // data representation
+    Counted{0x8006, 8},  // Fast DDS's data sharing: domains
+};
 
 /// The content of one submessage, behind its header.
 class Submessage {
@@ -32,6 +56,10 @@ public:
 
     std::size_t size() const { return size_; }
 
+    /// The same, its numbers in this byte order.
+    Submessage in_order(bool little) const { return {content_, size_, little}; }
+
+    std::uint8_t octet(std::size_t place) const { return content_[place]; }
     std::uint16_t half_word(std::size_t place) const { return static_cast<std::uint16_t>(number(place, 2)); }
     std::uint32_t word(std::size_t place) const { return number(place, 4); }
 
@@ -63,22 +91,49 @@ bool is_sound_gap(const Submessage& content)
     return first > 0 && end >= first && end - first <= longest_gap;
 }
 
-/// Whether the list of parameters that begins there [RTPS 9.4.2.11] ends in the same submessage.
-bool ends(const Submessage& content, std::size_t place)
+/// A parameter's elements fit into it.
+bool fits(const Submessage& content, std::size_t place, std::size_t length)
+{
+    const auto id = static_cast<std::uint16_t>(content.half_word(place) & ~must_understand);
+    const auto counted = std::ranges::find(counted_parameters, id, &Counted::id);
+    if (counted == counted_parameters.end()) return true;
+    return length >= 4 && content.word(place + 4) <= (length - 4) / counted->element_size;
+}
+
+/// @returns where the list of parameters that begins there [RTPS 9.4.2.11] ends; nothing where that is not in the same submessage, or one
+/// of them promises more than it holds.
+std::optional<std::size_t> end_of_parameters(const Submessage& content, std::size_t place)
 {
     while (place + 4 <= content.size()) {
         const std::size_t length = content.half_word(place + 2);
-        if (content.half_word(place) == sentinel) return true;
+        if (content.half_word(place) == sentinel) return place + 4;
+        if (place + 4 + length > content.size() || !fits(content, place, length)) return std::nullopt;
         place += 4 + length;
     }
-    return false;
+    return std::nullopt;
+}
+
+/// What describes a participant or an endpoint, behind the four octets that tell its form.
+bool is_sound_description(const Submessage& content, std::size_t place)
+{
+    if (place + 4 > content.size()) return true;  // none: it leaves
+    const std::uint8_t form = content.octet(place + 1);
+    if (form != parameter_list_big_endian && form != parameter_list_little_endian) return true;
+    return end_of_parameters(content.in_order(form == parameter_list_little_endian), place + 4).has_value();
 }
 
 /// [RTPS 9.4.5.4, 9.4.5.5]: flags, how far it is from here to the inline QoS, reader, writer, number.
-bool is_sound_data(const Submessage& content, std::uint8_t flags)
+bool is_sound_data(const Submessage& content, std::uint8_t id, std::uint8_t flags)
 {
     if (content.size() < 20) return false;
-    return (flags & inline_qos_flag) == 0 || ends(content, 4U + content.half_word(2));
+    std::size_t place = 4U + content.half_word(2);
+    if ((flags & inline_qos_flag) != 0) {
+        const auto end = end_of_parameters(content, place);
+        if (!end) return false;
+        place = *end;
+    }
+    const bool describes = id == data && (content.octet(11) & builtin_entity) == builtin_entity;
+    return !describes || is_sound_description(content, place);
 }
 
 /// [RTPS 9.4.5.5]: flags, reader, writer, number, and which fragments of what size of a sample of what size.
@@ -98,15 +153,16 @@ bool is_sound_rtps(const std::uint8_t* bytes, std::size_t size)
         const std::uint8_t flags = bytes[place + 1];
         const bool little = (flags & little_endian_flag) != 0;
         const std::size_t first = bytes[place + 2], second = bytes[place + 3];
-        std::size_t length = little ? first | second << 8U : first << 8U | second;
+        const std::size_t length = little ? first | second << 8U : first << 8U | second;
         const std::size_t left = size - place - submessage_header_size;
         if (length > left) return false;
         if (id == statistics) return length == statistics_size && length == left;
-        // Of the others, a length of 0 reaches to the datagram's end.
-        if (length == 0 && id != pad && id != info_timestamp) length = left;
+        // Of the others a length of 0 means "to the end", which only what is longer than a datagram needs; Fast DDS's two parsers differ
+        // there.
+        if (length == 0 && id != pad && id != info_timestamp && left != 0) return false;
         const Submessage content(bytes + place + submessage_header_size, length, little);
         if (id == gap && !is_sound_gap(content)) return false;
-        if ((id == data || id == data_fragment) && !is_sound_data(content, flags)) return false;
+        if ((id == data || id == data_fragment) && !is_sound_data(content, id, flags)) return false;
         if (id == data_fragment && !is_sound_fragment(content)) return false;
         place += submessage_header_size + length;
     }

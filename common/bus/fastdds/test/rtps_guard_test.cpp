@@ -118,6 +118,30 @@ TEST(RtpsGuard, refuses_inline_qos_that_reaches_beyond_its_submessage)
     }
 }
 
+TEST(RtpsGuard, refuses_descriptions_of_endpoints_that_promise_more_than_they_hold)
+{
+    constexpr std::uint32_t subscriptions_writer = 0x4c2, some_writer = 0x103, data_representation = 0x73;
+    // One parameter of eight octets, its count and room for two data representations, in a list of this byte order.
+    const auto with_description = [](std::uint32_t writer, bool little, std::uint32_t id, std::uint32_t count) {
+        const std::uint32_t octets_to_inline_qos = little ? 16U << 16U : 16U;
+        const std::uint32_t form = little ? 0x0300U : 0x0002'0000U;
+        auto datagram = with_words(
+            0x15, little,
+            {octets_to_inline_qos, 0, writer, 0, 1, form, little ? 8U << 16U | id : id << 16U | 8U, count, 0, little ? 1U : 1U << 16U});
+        datagram[21] = static_cast<std::uint8_t>(datagram[21] | 0x04);
+        if (little) std::reverse(datagram.begin() + 32, datagram.begin() + 36);  // entities are octets in order
+        return datagram;
+    };
+    for (const bool little : {true, false}) {
+        EXPECT_TRUE(sound(with_description(subscriptions_writer, little, data_representation, 2)));
+        EXPECT_FALSE(sound(with_description(subscriptions_writer, little, data_representation, 3)));
+        EXPECT_FALSE(sound(with_description(subscriptions_writer, little, data_representation, 0xFFFF'FFFF)));
+        EXPECT_FALSE(sound(with_description(subscriptions_writer, little, 0x4000U | data_representation, 3))) << "must be understood";
+        EXPECT_TRUE(sound(with_description(subscriptions_writer, little, 0x1d, 0xFFFF'FFFF))) << "no count, but a time";
+        EXPECT_TRUE(sound(with_description(some_writer, little, data_representation, 3))) << "somebody's sample";
+    }
+}
+
 TEST(RtpsGuard, refuses_gaps_that_would_be_walked_for_ever)
 {
     for (const bool little : {true, false}) {
@@ -133,10 +157,20 @@ TEST(RtpsGuard, refuses_gaps_that_would_be_walked_for_ever)
 TEST(RtpsGuard, refuses_fragments_of_samples_that_are_too_large)
 {
     for (const bool little : {true, false}) {
-        EXPECT_TRUE(sound(with_fragment(1'048'576, little)));
-        EXPECT_FALSE(sound(with_fragment(1'048'577, little)));
+        EXPECT_TRUE(sound(with_fragment(65'536, little)));
+        EXPECT_FALSE(sound(with_fragment(65'537, little)));
         EXPECT_FALSE(sound(with_fragment(0xFFFF'FFFF, little)));
     }
+}
+
+TEST(RtpsGuard, refuses_a_submessage_without_a_length_that_is_not_the_last)
+{
+    auto datagram = with_gap(1, 1, true);
+    datagram[22] = datagram[23] = 0;
+    EXPECT_FALSE(sound(datagram)) << "to the end, or nothing: what follows is read in two ways";
+    datagram[20] = 0x09;  // a time stamp that is taken back has no content
+    datagram.resize(24);
+    EXPECT_TRUE(sound(datagram));
 }
 
 TEST(RtpsGuard, refuses_another_protocol_and_lengths_beyond_the_end)

@@ -1,0 +1,112 @@
+// An endpoint may listen elsewhere than its node says: Fast DDS 2.9.1 as packaged aborts the process that first sends there.
+
+#include "../src/types.hpp"
+#include "quorient/bus/bus.hpp"
+#include "quorient/bus/fastdds_bus.hpp"
+#include "quorient/bus/topics.hpp"
+
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+#include <chrono>
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <memory>
+
+namespace quorient::bus {
+
+namespace {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastdds::rtps;
+using eprosima::fastrtps::types::ReturnCode_t;
+
+/// A plain node of the vendor on loopback, whose reader of frames listens at addresses that its participant does not announce.
+class ForeignReader {
+public:
+    ForeignReader(std::uint32_t domain, std::uint32_t own_port, std::uint32_t shared_port)
+        : type_(fastdds::type_support_of(topics::frame.spec.type))
+    {
+        dds::DomainParticipantQos node;
+        node.transport().use_builtin_transports = false;
+        const auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
+        udp->interfaceWhiteList = {"127.0.0.1"};
+        node.transport().user_transports.push_back(udp);
+        participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(domain, node);
+        type_.register_type(participant_);
+        auto* topic = participant_->create_topic(topics::frame.spec.name, type_.get_type_name(), dds::TOPIC_QOS_DEFAULT);
+        dds::DataReaderQos qos;
+        qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
+        qos.endpoint().unicast_locator_list.push_back(address("127.0.0.1", own_port));
+        qos.endpoint().multicast_locator_list.push_back(address("239.255.0.7", shared_port));
+        reader_ = participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT)->create_datareader(topic, qos);
+        sample_ = type_.create_data();
+    }
+    ~ForeignReader()
+    {
+        type_.delete_data(sample_);
+        participant_->delete_contained_entities();
+        dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+    }
+    ForeignReader(const ForeignReader&) = delete;
+    ForeignReader& operator=(const ForeignReader&) = delete;
+
+    bool take()
+    {
+        dds::SampleInfo info;
+        return reader_->take_next_sample(sample_, &info) == ReturnCode_t::RETCODE_OK && info.valid_data;
+    }
+
+private:
+    static eprosima::fastrtps::rtps::Locator_t address(const char* host, std::uint32_t port)
+    {
+        eprosima::fastrtps::rtps::Locator_t locator;
+        eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, host);
+        locator.port = port;
+        return locator;
+    }
+
+    dds::TypeSupport type_;
+    dds::DomainParticipant* participant_ = nullptr;
+    dds::DataReader* reader_ = nullptr;
+    void* sample_ = nullptr;
+};
+
+TEST(ForeignAddress, of_readers_that_their_nodes_did_not_announce_ends_nobody_and_is_served)
+{
+    // Within a process Fast DDS would hand samples over without a transport.
+    eprosima::fastrtps::LibrarySettingsAttributes through_transports;
+    through_transports.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+    eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(through_transports);
+
+    const std::uint32_t domain = 120 + static_cast<std::uint32_t>(::getpid()) % 100;
+    Settings settings;
+    settings.vendor = Vendor::fastdds;
+    settings.domain = domain;
+    const auto bus = open_fastdds(settings);
+    ASSERT_TRUE(bus) << bus.error();
+    auto publisher = (*bus)->advertise(topics::frame);
+    // RTPS leaves eight ports of each domain free. One address is used for both readers where there are two.
+    const std::uint32_t free_port = 7400 + 250 * domain + 2;
+    ForeignReader first(domain, free_port, free_port + 2);
+    ForeignReader second(domain, free_port + 1, free_port + 2);
+
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds{20};
+    bool by_first = false, by_second = false;
+    while (!(by_first && by_second) && std::chrono::steady_clock::now() < deadline) {
+        if (publisher.status().matched == 2) publisher.publish(SensorFrame{});
+        (*bus)->wait(5'000'000);
+        by_first = first.take() || by_first;
+        by_second = second.take() || by_second;
+    }
+    EXPECT_TRUE(by_first && by_second);
+}
+
+}  // namespace
+
+}  // namespace quorient::bus
