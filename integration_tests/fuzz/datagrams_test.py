@@ -103,7 +103,6 @@ class Datagrams(InteropTest):
     def test_cyclonedds_survives(self):
         self.survives("cyclonedds")
 
-    @unittest.skipUnless(os.environ.get("QUORIENT_FUZZ_FASTDDS"), "Fast DDS 2.9.1 does not end, but grows: README.md")
     def test_fastdds_survives(self):
         self.survives("fastdds")
 
