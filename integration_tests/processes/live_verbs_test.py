@@ -38,9 +38,12 @@ class LiveVerbs(ProcessTest):
     def test_inject_breaks_an_axis_and_readmit_trusts_it_again(self):
         injected = self.run_program("quorient", "inject", "axis=2,kind=bias,value=0.05,start=0,end=0.5", "--domain", self.domain)
         self.assertEqual(injected.returncode, 0, injected.stdout + injected.stderr)
-        self.eventually(lambda: self.echo("verdict", 1)[0]["isolated_mask"] == 0b100, "axis 2 isolated")
+        isolating = lambda: {verdict["detector"] for verdict in self.echo("verdict", 24) if verdict["isolated_mask"] == 0b100}  # noqa: E731
+        self.eventually(lambda: len(isolating()) >= 2, "axis 2 isolated by two detectors")
         readmitted = self.run_program("quorient", "readmit", "--axis", 2, "--domain", self.domain)
-        self.assertEqual(readmitted.returncode, 0, readmitted.stdout + readmitted.stderr)
+        for detector in ("fdi-a", "fdi-b"):  # lane c's modulus predictor may say AMBIGUOUS instead, and then has nothing to readmit
+            self.assertIn(f"{detector}: readmits axis 2", readmitted.stdout, readmitted.stderr)
+        self.assertEqual(readmitted.returncode, 1 if "fdi-c: has not isolated" in readmitted.stdout else 0)
         self.eventually(lambda: self.echo("voter_output", 1)[0]["isolated_mask"] == 0, "axis 2 trusted again")
 
     def test_readmit_of_a_healthy_axis_is_refused(self):
