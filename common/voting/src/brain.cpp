@@ -414,7 +414,7 @@ void Voter::Brain::emit(const VotedAttitude& attitude, bool repeated)
     outputs_.push().attitude = attitude;
     ranking_.published(attitude.output_sequence);
     owned_.push(attitude, repeated, *now_);
-    spoke_ns_ = *now_;
+    spoke_ns_ = repeated ? std::nullopt : now_;  // between repetitions a voter is alive by assertion alone
     ++counters_.published;
 }
 

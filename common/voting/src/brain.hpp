@@ -90,7 +90,7 @@ private:
 
     std::optional<std::int64_t> now_;
     std::int64_t promised_ns_ = 0;          ///< when poll was asked for
-    std::optional<std::int64_t> spoke_ns_;  ///< the last output, since it started over
+    std::optional<std::int64_t> spoke_ns_;  ///< the last output, where that was a frame's
 
     LaneIndex primary_ = 0;
     std::array<std::uint64_t, 8> change_{};  ///< outputs at which the primary changed

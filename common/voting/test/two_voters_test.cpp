@@ -114,6 +114,16 @@ TEST(TwoVoters, that_never_hear_the_stronger_one_own_after_two_seconds)
     EXPECT_TRUE(weak.voter.owns());
 }
 
+TEST(TwoVoters, that_coast_and_wake_a_little_late_do_not_start_over)
+{
+    Pair pair;
+    pair.frames(0, 99);
+    pair.strong.until(Scene::time_of(99) + 300 * ms);
+    ASSERT_EQ(pair.strong.last().vouching_mask, 0U) << "it repeats its last attitude";
+    for (int wake = 0; wake < 20; ++wake) pair.strong.stopped_until(pair.strong.voter.next_deadline_ns() + 4 * ms);
+    EXPECT_EQ(pair.strong.voter.counters().resynchronised, 0U);
+}
+
 TEST(TwoVoters, lose_no_frame_at_a_cold_start)
 {
     Pair pair;
