@@ -34,14 +34,21 @@ def missing_frames(samples, truth, first, end):
     return sorted(identity for identity in truth if first <= identity <= end and identity not in answered)
 
 
-def largest_gap(samples, truth, first, end):
-    """Longest run of consecutive frames of the publisher without a sample."""
+def gaps(samples, truth, first, end):
+    """(first identity, length) of every run of consecutive frames of the publisher without a sample."""
     missing = set(missing_frames(samples, truth, first, end))
-    longest = run = 0
+    runs, run = [], []
     for identity in sorted(truth):
-        run = run + 1 if identity in missing else 0
-        longest = max(longest, run)
-    return longest
+        if identity in missing:
+            run.append(identity)
+        elif run:
+            runs.append((run[0], len(run)))
+            run = []
+    return runs + ([(run[0], len(run))] if run else [])
+
+
+def largest_gap(samples, truth, first, end):
+    return max((length for _, length in gaps(samples, truth, first, end)), default=0)
 
 
 def disordered(samples, end, key):

@@ -342,13 +342,13 @@ void announce_in_order(dds::WireProtocolConfigQos& wire)
 /// full after every sample, and asks each reader to acknowledge it.
 constexpr std::uint32_t send_buffer = 212'992;
 
-void add_transports(const Settings& settings, dds::TransportConfigQos& transports)
+void add_transports(const Settings& settings, fastdds::Listening listening, dds::TransportConfigQos& transports)
 {
     transports.use_builtin_transports = false;
     const auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
     udp->sendBufferSize = send_buffer;
     if (!settings.interface.empty()) udp->interfaceWhiteList = addresses_of(settings.interface);
-    transports.user_transports.push_back(fastdds::guarded(udp));
+    transports.user_transports.push_back(fastdds::guarded(udp, std::move(listening)));
     if (shares_memory(settings)) transports.user_transports.push_back(std::make_shared<rtps::SharedMemTransportDescriptor>());
 }
 
@@ -375,11 +375,12 @@ tl::expected<std::unique_ptr<Bus>, std::string> open_fastdds(const Settings& ask
     dds::Log::SetVerbosity(dds::Log::Error);
     dds::DomainParticipantQos qos;
     qos.name(settings.participant);
-    add_transports(settings, qos.transport());
+    const auto listening = std::make_shared<std::atomic<bool>>(false);
+    add_transports(settings, listening, qos.transport());
     auto& builtin = qos.wire_protocol().builtin;
-    // Peers that start together find each other without waiting for the 3 s announcement.
+    // Peers that start together find each other without waiting for the 3 s announcement; the first goes nowhere (guarded_transport.hpp).
     builtin.discovery_config.initial_announcements.count = 50;
-    builtin.discovery_config.initial_announcements.period = seconds(0.1);
+    builtin.discovery_config.initial_announcements.period = seconds(0.02);
     builtin.discovery_config.leaseDuration_announcementperiod = seconds(1);
     builtin.discovery_config.leaseDuration = seconds(10);
     if (settings.interface.empty() && !settings.peers.empty() && !shares_memory(settings)) announce_in_order(qos.wire_protocol());
@@ -391,6 +392,7 @@ tl::expected<std::unique_ptr<Bus>, std::string> open_fastdds(const Settings& ask
 
     auto* participant = dds::DomainParticipantFactory::get_instance()->create_participant(settings.domain, qos);
     if (!participant) return tl::make_unexpected(fmt::format("Fast DDS: cannot join domain {}", settings.domain));
+    listening->store(true);
     auto bus = std::make_unique<FastBus>(settings, participant);
     if (shares_memory(settings) && settings.shared_memory == SharedMemory::required && bus->transport() == Transport::udp)
         return tl::make_unexpected(std::string{

@@ -1,5 +1,6 @@
 #include "guarded_transport.hpp"
 
+#include "foreign_acknacks.hpp"
 #include "rtps_guard.hpp"
 
 #include <fastdds/rtps/network/SenderResource.h>
@@ -17,8 +18,13 @@ using eprosima::fastrtps::rtps::octet;
 namespace {
 
 struct GuardedDescriptor final : rtps::ChainingTransportDescriptor {
-    using rtps::ChainingTransportDescriptor::ChainingTransportDescriptor;
+    GuardedDescriptor(std::shared_ptr<rtps::TransportDescriptorInterface> below, Listening is_listening)
+        : rtps::ChainingTransportDescriptor(std::move(below)), listening(std::move(is_listening))
+    {
+    }
     rtps::TransportInterface* create_transport() const override;
+
+    Listening listening;
 };
 
 /// Says of each address that is about to be sent to, before it is.
@@ -55,6 +61,7 @@ public:
     bool send(eprosima::fastrtps::rtps::SenderResource* below, const octet* buffer, std::uint32_t size, LocatorsIterator* begin,
               LocatorsIterator* end, const std::chrono::steady_clock::time_point& timeout) override
     {
+        if (!descriptor_.listening->load(std::memory_order_relaxed)) return true;
         const auto announce = [this](const Locator_t& locator) { know(locator); };
         Announcing first{*begin, announce};
         Announcing last{*end, announce};
@@ -66,7 +73,9 @@ public:
     void receive(rtps::TransportReceiverInterface* above, const octet* buffer, std::uint32_t size, const Locator_t& local,
                  const Locator_t& remote) override
     {
-        if (is_sound_rtps(buffer, size)) above->OnDataReceived(buffer, size, local, remote);
+        if (!is_sound_rtps(buffer, size)) return;
+        const auto understood = with_understood_acknacks(buffer, size);
+        above->OnDataReceived(understood ? understood->data() : buffer, size, local, remote);
     }
 
 private:
@@ -91,9 +100,10 @@ rtps::TransportInterface* GuardedDescriptor::create_transport() const
 
 }  // namespace
 
-std::shared_ptr<rtps::TransportDescriptorInterface> guarded(std::shared_ptr<rtps::TransportDescriptorInterface> transport)
+std::shared_ptr<rtps::TransportDescriptorInterface> guarded(std::shared_ptr<rtps::TransportDescriptorInterface> transport,
+                                                            Listening listening)
 {
-    return std::make_shared<GuardedDescriptor>(std::move(transport));
+    return std::make_shared<GuardedDescriptor>(std::move(transport), std::move(listening));
 }
 
 }  // namespace quorient::bus::fastdds

@@ -1,5 +1,7 @@
 #include "rtps_guard.hpp"
 
+#include "rtps_submessage.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -9,13 +11,8 @@ namespace quorient::bus::fastdds {
 
 namespace {
 
-constexpr std::size_t header_size = 20;
-constexpr std::size_t submessage_header_size = 4;
-constexpr std::uint8_t little_endian_flag = 0x01;
 constexpr std::uint8_t inline_qos_flag = 0x02;
-constexpr std::uint8_t pad = 0x01;
 constexpr std::uint8_t gap = 0x08;
-constexpr std::uint8_t info_timestamp = 0x09;
 constexpr std::uint8_t data = 0x15;
 constexpr std::uint8_t data_fragment = 0x16;
 constexpr std::uint16_t sentinel = 0x0001;
@@ -28,8 +25,7 @@ constexpr std::int64_t longest_gap = 65'536;
 /// Memory for the whole sample is taken on its first fragment. Samples here are far smaller: any fits in one datagram.
 constexpr std::uint32_t largest_sample = 65'536;
 
-/// Of a writer that describes participants and endpoints [RTPS 9.3.1.5], and of its data's form: a list of parameters.
-constexpr std::uint8_t builtin_entity = 0xc0;
+/// The form of data that describes participants and endpoints: a list of parameters.
 constexpr std::uint8_t parameter_list_big_endian = 0x02;
 constexpr std::uint8_t parameter_list_little_endian = 0x03;
 constexpr std::uint16_t must_understand = 0x4000;
@@ -47,39 +43,6 @@ constexpr std::array counted_parameters{
     Counted{0x0059, 8},  // properties: pairs of strings
     Counted{0x0073, 2},  // data representation
     Counted{0x8006, 8},  // Fast DDS's data sharing: domains
-};
-
-/// The content of one submessage, behind its header.
-class Submessage {
-public:
-    Submessage(const std::uint8_t* content, std::size_t size, bool little) : content_(content), size_(size), little_(little) {}
-
-    std::size_t size() const { return size_; }
-
-    /// The same, its numbers in this byte order.
-    Submessage in_order(bool little) const { return {content_, size_, little}; }
-
-    std::uint8_t octet(std::size_t place) const { return content_[place]; }
-    std::uint16_t half_word(std::size_t place) const { return static_cast<std::uint16_t>(number(place, 2)); }
-    std::uint32_t word(std::size_t place) const { return number(place, 4); }
-
-    /// [RTPS 9.3.2.3]: the high word comes first in either byte order.
-    std::int64_t sequence_number(std::size_t place) const
-    {
-        return static_cast<std::int64_t>(static_cast<std::uint64_t>(word(place)) << 32U | word(place + 4));
-    }
-
-private:
-    std::uint32_t number(std::size_t place, std::size_t bytes) const
-    {
-        std::uint32_t value = 0;
-        for (std::size_t i = 0; i < bytes; ++i) value = value << 8U | content_[place + (little_ ? bytes - 1 - i : i)];
-        return value;
-    }
-
-    const std::uint8_t* content_;
-    std::size_t size_;
-    bool little_;
 };
 
 /// [RTPS 9.4.5.6]: reader, writer, first number, and behind the gap the base of a set.
@@ -132,7 +95,7 @@ bool is_sound_data(const Submessage& content, std::uint8_t id, std::uint8_t flag
         if (!end) return false;
         place = *end;
     }
-    const bool describes = id == data && (content.octet(11) & builtin_entity) == builtin_entity;
+    const bool describes = id == data && is_builtin(content.octet(11));
     return !describes || is_sound_description(content, place);
 }
 
@@ -149,17 +112,13 @@ bool is_sound_rtps(const std::uint8_t* bytes, std::size_t size)
     if (size < header_size || std::memcmp(bytes, "RTPS", 4) != 0) return false;
     for (std::size_t place = header_size; place < size;) {
         if (size - place < submessage_header_size) return false;
-        const auto id = bytes[place];
-        const std::uint8_t flags = bytes[place + 1];
-        const bool little = (flags & little_endian_flag) != 0;
-        const std::size_t first = bytes[place + 2], second = bytes[place + 3];
-        const std::size_t length = little ? first | second << 8U : first << 8U | second;
+        const auto [id, flags, little, length] = submessage_header_at(bytes + place);
         const std::size_t left = size - place - submessage_header_size;
         if (length > left) return false;
         if (id == statistics) return length == statistics_size && length == left;
         // Of the others a length of 0 means "to the end", which only what is longer than a datagram needs; Fast DDS's two parsers differ
         // there.
-        if (length == 0 && id != pad && id != info_timestamp && left != 0) return false;
+        if (length == 0 && !may_be_empty(id) && left != 0) return false;
         const Submessage content(bytes + place + submessage_header_size, length, little);
         if (id == gap && !is_sound_gap(content)) return false;
         if ((id == data || id == data_fragment) && !is_sound_data(content, id, flags)) return false;
