@@ -223,8 +223,9 @@ void AttitudeIntegrator::on_voted(const VotedAttitude& voted)
     const bool vouched =
         voted.level == static_cast<std::uint8_t>(VoteLevel::full) || voted.level == static_cast<std::uint8_t>(VoteLevel::degraded);
     if (vouched && voted.primary_lane != settings_.integration.lane) integrator_->let_go(~voted.isolated_mask);
-    if (is(integrator_->state(), AttitudeMode::initialising)) integrator_->seed(voted);
-    else if (absent_until_ && identity_of(voted) >= *absent_until_) rejoin(voted);
+    if (is(integrator_->state(), AttitudeMode::initialising)) return integrator_->seed(voted);
+    if (vouched) mend_seed(voted);
+    if (absent_until_ && identity_of(voted) >= *absent_until_) rejoin(voted);
 }
 
 /// @returns why not; empty if done.
@@ -239,6 +240,19 @@ std::string AttitudeIntegrator::reset_attitude(const FaultCommand& command)
     if (!sequence || !integrator_->reset(command.attitude, static_cast<std::uint64_t>(command.value)))
         return fmt::format("cannot reset: sequence {:.0f} is not in the history", command.value);
     return {};
+}
+
+/// What was taken over between the beginning of a fault and its isolation has the fault in it. The lanes that were there before have
+/// corrected themselves since.
+void AttitudeIntegrator::mend_seed(const VotedAttitude& voted)
+{
+    const auto axes = integrator_->distrusted_in_seed();
+    const bool corrected = (axes & ~voted.isolated_mask) == 0 && voted.primary_lane != settings_.integration.lane;
+    if (axes == 0 || !corrected) return;
+    integrator_->seed(voted);
+    if (integrator_->distrusted_in_seed() != 0) return;  // that frame has not come yet
+    node_.report(EventCode::seeded, Severity::info, identity_of(voted), axes,
+                 fmt::format("SEEDED again: the attitude taken over had a fault of {} in it", runtime::describe_axes(axes)));
 }
 
 /// This process was stopped or cut off: the bridge over its absence lacks the coning in it, the lanes that went on do not.

@@ -29,6 +29,7 @@ private:
     bool prepare(const ClusterDescription& description, std::uint64_t first_sequence);
     bool same_axes(const ClusterDescription& description);
     void integrate(const SensorFrame& frame);
+    void mend_seed(const VotedAttitude& voted);
     void rejoin(const VotedAttitude& voted);
     void publish_pending();
     void tell_changes(const AttitudeState& attitude);

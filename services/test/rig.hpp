@@ -91,8 +91,7 @@ public:
     void frame(Services&... services)
     {
         SensorFrame frame;
-        TruthState truth;
-        source_->advance_to(next_++, frame, truth);
+        source_->advance_to(next_++, frame, truth_);
         pass_time(frame_ns);
         publish(bus::topics::frame, frame);
         run(services...);
@@ -129,6 +128,7 @@ public:
     std::uint64_t next_sequence() const { return next_; }
     const FaultVerdict& verdict() const { return verdict_; }
     const AttitudeState& attitude() const { return attitude_; }
+    const TruthState& truth() const { return truth_; }  ///< of the newest frame
 
     /// What was answered to this request, in order.
     std::vector<HealthEvent> answers(std::uint64_t request) const
@@ -150,6 +150,7 @@ private:
     runtime::EventLoop ear_{*bus_, clock_, never_stop_};
     std::unique_ptr<sensor::FrameSource> source_;
     std::uint64_t next_ = 0;
+    TruthState truth_;
     FaultVerdict verdict_;
     AttitudeState attitude_;
     std::vector<HealthEvent> events_;

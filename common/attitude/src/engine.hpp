@@ -21,6 +21,7 @@ public:
     void mark_published();
     std::uint64_t history_too_short() const { return history_too_short_; }
     void seed(const VotedAttitude& voted);
+    AxisMask distrusted_in_seed() const;
     void let_go(AxisMask axes) { unconfirmed_ &= ~axes; }
     bool reset(const Quaternion& attitude, std::uint64_t sequence);
     void begin_epoch(std::uint64_t epoch, const Quaternion& attitude);
@@ -96,6 +97,7 @@ private:
     bool seeded_ = false;
     bool seed_waits_ = false;
     VotedAttitude waiting_seed_;
+    Identity seed_frame_;
     Opinion taken_over_;        // the exclusions of the newest seed
     AxisMask unconfirmed_ = 0;  // those that the lane's own detector has never had
     bool start_known_ = false;  // begin_epoch() was called for start_epoch_

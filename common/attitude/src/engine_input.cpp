@@ -228,6 +228,12 @@ void Integrator::Engine::seed(const VotedAttitude& voted)
     if (!caught_up()) work();
 }
 
+AxisMask Integrator::Engine::distrusted_in_seed() const
+{
+    if (!seeded_ || seed_frame_.epoch != epoch_) return 0;
+    return trust_.excluded_at(seed_frame_.sequence) & ~taken_over_.excluded;
+}
+
 void Integrator::Engine::connect_seed()
 {
     if (!seed_waits_) return;
@@ -245,7 +251,8 @@ void Integrator::Engine::connect_seed()
         trust_.begin_epoch(epoch_);
     } else {
         const std::size_t at = history_.find(voted.sequence);
-        const bool just_before = at == history_.size() && !history_.empty() && history_.oldest().first_sequence == voted.sequence + 1;
+        const bool just_before = at == history_.size() && !history_.empty() && history_.oldest().first_sequence == voted.sequence + 1 &&
+                                 !(history_.oldest().bridge && history_.oldest().valid == 0);  // nobody knows what turned there
         const bool at_end = at < history_.size() && history_[at].last_sequence == voted.sequence;
         seed_waits_ = just_before || at_end;
         if (!seed_waits_) return;
@@ -257,6 +264,7 @@ void Integrator::Engine::connect_seed()
     reset_counter_ = voted.reset_counter;
     reset_rotation_ = from_array(voted.reset_rotation);
     seed_waits_ = false;
+    seed_frame_ = identity_of(voted);
     seeded_ = initialised_ = catching_up_ = true;
     trust_.fold(history_);
     carry_opinion(0);

@@ -73,6 +73,11 @@ void Integrator::seed(const VotedAttitude& voted)
 {
     engine_->seed(voted);
 }
+
+AxisMask Integrator::distrusted_in_seed() const
+{
+    return engine_->distrusted_in_seed();
+}
 void Integrator::let_go(AxisMask axes)
 {
     engine_->let_go(axes);

@@ -73,6 +73,10 @@ public:
     /// first frame after that identity has been integrated. Flag SEEDED from then on, until reset().
     void seed(const VotedAttitude& voted);
 
+    /// Axes that the newest verdict excludes from the seed's frame on or before, and the seed did not: its attitude has their fault in
+    /// it, and no roll-back reaches there. 0 where it is sound, or there was none. A later seed from who has corrected itself mends it.
+    AxisMask distrusted_in_seed() const;
+
     /// Of the exclusions taken over by seed(), these may be cleared by a verdict that does not share them. Without it only a
     /// detector that has once excluded the axis itself clears it: one that was away at the onset may be unable to name it.
     void let_go(AxisMask axes);
