@@ -29,6 +29,7 @@ START_PATIENCE_S = 15
 UNITS_SECONDS = 6  # many processes start slowly, and their CPU time counts when all run
 DOMAINS = 16  # used in turns: the one before may still be saying goodbye
 FLOORS = ("floor", "floor_that_waits")
+PROGRAMS = ("quorient-latency-graph", "quorient-latency-probe", "quorient-latency-ping")
 
 # Name -> the keys of the system file for sensor, lanes and voters in turn, and the floor's arguments.
 TRANSPORTS = {
@@ -191,6 +192,8 @@ class Runner:
                     process.kill()
                     process.wait()
         report = json.loads(probe.stdout.read())
+        if "before_the_probe" not in report:
+            ask_for_build("quorient-latency-probe is of an earlier build")
         report["processes"] = used
         whole = int(round(seconds * case["rate_hz"])) * heard
         report["expected"] = whole - skip * heard - report["before_the_probe"]
@@ -344,13 +347,23 @@ def parse():
     parser.add_argument("--domain", type=int, default=30, help="this one and the seventeen after it")
     parser.add_argument("--out", type=pathlib.Path, default=HERE.parent / "results/latency", help="NAME: writes NAME.json and NAME.md")
     options = parser.parse_args()
+    if unknown := set(options.only.split(",")) - set(SECTIONS):
+        parser.error(f"--only {', '.join(sorted(unknown))}: it knows {', '.join(SECTIONS)}")
     if options.quick:
         options.rounds, options.seconds, options.minute, options.pings = 1, 1, 5, 100
     return options
 
 
+def ask_for_build(what):
+    """The ordinary build leaves these programs out."""
+    sys.exit(f"{BIN}: {what}; cmake --build {BIN.parent} --target {' '.join(PROGRAMS)}")
+
+
 def main():
     options = parse()
+    missing = [name for name in PROGRAMS if not (BIN / name).exists()]
+    if missing:
+        ask_for_build(f"no {', '.join(missing)}")
     results = {"machine": machine(options)}
     runner = Runner(options)
     options.out.parent.mkdir(parents=True, exist_ok=True)
