@@ -22,7 +22,10 @@ constexpr double roughness_in_weight = 0.03;
 ArraySums::ArraySums(const InstrumentArray& array, const MotionNoise& motion)
     : array_(array), motion_(motion), scale_(3 / array.mean_information().trace()), totals_(history_length)
 {
-    for (Totals& totals : totals_) totals.sum.setZero(3, static_cast<Eigen::Index>(array.size()));
+    for (Totals& totals : totals_) {
+        totals.sum.setZero(3, static_cast<Eigen::Index>(array.size()));
+        totals.own.fill(Eigen::Matrix3d::Zero());
+    }
 }
 
 void ArraySums::exclude(AxisMask excluded)
@@ -94,7 +97,6 @@ void ArraySums::count_in(const Pending& frame, const Eigen::Vector3d& accelerati
     const Eigen::Matrix3d moving = motion_covariance(frame, acceleration_after, blow, rough) + array_.blindness(frame.saturated, h);
     const Eigen::Matrix3d weight = scale_ * (array_.mean_covariance() + moving).inverse();
     const double largest = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>().computeDirect(weight, Eigen::EigenvaluesOnly).eigenvalues()(2);
-    const double resting = weight.trace() / 3;
 
     const Totals& before = total(0);
     Totals& now = totals_[next_];
@@ -106,7 +108,8 @@ void ArraySums::count_in(const Pending& frame, const Eigen::Vector3d& accelerati
         const auto j = static_cast<std::size_t>(axis);
         now.rotated[j] = before.rotated[j] + weight * (frame.rate(axis) * h);
     }
-    now.rest = before.rest + resting * resting;
+    for (std::size_t m = 0; m < array_.size(); ++m)
+        now.own[m] = before.own[m] + weight * (array_[m].covariance - array_.mean_covariance()) * weight;
     now.roughness = largest * largest * rough;
     now.sequence = frame.sequence;
     next_ = (next_ + 1) % history_length;
@@ -142,7 +145,6 @@ ArraySums::Fit ArraySums::fit(std::size_t window) const
     const Totals& newest = total(0);
     const Totals& oldest = total(window);
     const Eigen::Matrix3d common = common_covariance(window);
-    const double rest = scale_ * scale_ * (newest.rest - oldest.rest);
 
     Fit fit;
     fit.weight = newest.weight - oldest.weight;
@@ -151,10 +153,8 @@ ArraySums::Fit ArraySums::fit(std::size_t window) const
     for (std::size_t m = 0; m < array_.size(); ++m) {
         if (!array_.compared(m)) continue;
         const auto column = static_cast<Eigen::Index>(m);
-        const Eigen::Matrix3d own =
-            array_.mean_information() * (array_[m].covariance - array_.mean_covariance()) * array_.mean_information();
         fit.value[m] = newest.sum.col(column) - oldest.sum.col(column);
-        fit.information[m] = (common + rest * own).inverse();
+        fit.information[m] = (common + newest.own[m] - oldest.own[m]).inverse();
         total_information += fit.information[m];
         total_value += fit.information[m] * fit.value[m];
     }

@@ -7,8 +7,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <span>
 #include <string>
 
 namespace quorient::fdi {
@@ -190,6 +192,54 @@ TEST(Accumulating, does_not_blame_an_axis_that_alone_is_near_its_range)
                          assessment);
         EXPECT_EQ(detector->saturated(), sequence >= 200 && sequence <= 230) << "frame " << sequence;
         EXPECT_NE(assessment.outcome, Outcome::isolated);
+    }
+}
+
+/// Instruments of unlike noise in a turn whose acceleration hides one direction: the largest statistic, and who is isolated.
+struct Unlike {
+    double largest = 0;
+    AxisMask isolated = 0;
+};
+
+Unlike play_unlike(std::uint64_t seed, double bias_deg_s, std::size_t axis)
+{
+    constexpr double rate_sigma_of_others = 1 * degree;
+    Array array(seed);
+    array.jitter_s = 0.6e-3;
+    for (Eigen::Index other = 3; other < 9; ++other) array.cluster.sigma(other) = std::hypot(rate_sigma, rate_sigma_of_others) * interval_s;
+    const auto turning = [](double t) { return Eigen::Vector3d(3 * std::sin(9 * t), 2 * std::sin(8 * t + 1), 3 * std::cos(10 * t)); };
+    DetectorSettings settings{.method = "accumulating"};
+    settings.instruments = true;
+    const auto detector = Accumulating::make(settings, array.cluster, {.jitter_along_s = array.jitter_s}).value();
+    std::mt19937_64 random(seed + 1000);
+    std::normal_distribution<double> normal;
+    Assessment assessment;
+    Unlike result;
+    for (std::uint64_t sequence = 0; sequence < 4000 && result.isolated == 0; ++sequence) {
+        SensorFrame frame = array.frame(sequence, turning);
+        for (std::size_t other = 3; other < 9; ++other) frame.increment[other] += rate_sigma_of_others * interval_s * normal(random);
+        frame.increment[axis] += bias_deg_s * degree * interval_s;
+        detector->assess({.identity = {.epoch = 1, .sequence = sequence},
+                          .interval_s = interval_s,
+                          .increment = std::span(frame.increment).first(9),
+                          .valid = frame.valid_mask},
+                         assessment);
+        result.largest = std::max(result.largest, assessment.statistic);
+        result.isolated = assessment.isolated;
+    }
+    return result;
+}
+
+TEST(Accumulating, is_silent_where_a_turn_hides_one_direction_of_instruments_of_unlike_noise)
+{
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) EXPECT_LT(play_unlike(seed, 0, 0).largest, 1) << "seed " << seed;
+}
+
+TEST(Accumulating, names_who_is_wrong_where_a_turn_hides_one_direction_of_instruments_of_unlike_noise)
+{
+    for (std::size_t axis = 0; axis < 9; ++axis) {
+        const AxisMask instrument = AxisMask{7} << (axis / 3 * 3);
+        EXPECT_EQ(play_unlike(axis, 3, axis).isolated, instrument) << "axis " << axis;
     }
 }
 

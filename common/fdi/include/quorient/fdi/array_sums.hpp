@@ -19,7 +19,7 @@ namespace quorient::fdi {
 /// Each frame is weighted by W_k = c (C + M_k)^-1, C the mean of C_m: the same for all instruments (clipping each alone would destroy
 /// isolation), so that sums over a window still agree:
 ///   y_m = sum W_k theta_m,k = (sum W_k theta_k) + e_m,
-///   cov e_m = c W + s C^-1 (C_m - C) C^-1 + floors + outliers,     W = sum W_k
+///   cov e_m = c W + sum W_k (C_m - C) W_k + floors + outliers,     W = sum W_k
 ///   floors: bias_floor, rate_error |omega| and axes_error omega, summed as a constant error would be;
 ///   outliers: kappa^2 max over the window of (|W_k| rough_k)^2, rough_k the lately largest |a| h.
 /// Across a turn what little is certain then counts fully, and in the calm moments all of it.
@@ -93,8 +93,8 @@ private:
         Eigen::Matrix3d biased = Eigen::Matrix3d::Zero();  ///< W_k h
         Eigen::Matrix3d turned = Eigen::Matrix3d::Zero();  ///< W_k |omega| h
         std::array<Eigen::Matrix3d, 3> rotated{Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero(),
-                                               Eigen::Matrix3d::Zero()};  ///< W_k omega_j h
-        double rest = 0;                                                  ///< how much of W_k is that of rest, squared
+                                               Eigen::Matrix3d::Zero()};      ///< W_k omega_j h
+        std::array<Eigen::Matrix3d, InstrumentArray::max_instruments> own{};  ///< W_k (C_m - C) W_k
         double roughness = 0;  ///< of this frame alone, weighted: |W_k|^2 times the square that roughness_s^2 multiplies
         std::uint64_t sequence = 0;
     };
