@@ -34,6 +34,12 @@ def missing_frames(samples, truth, first, end):
     return sorted(identity for identity in truth if first <= identity <= end and identity not in answered)
 
 
+def first_judged(samples):
+    """Until half a second after the start a listener that starts with the system may have found one voter and not yet the other."""
+    epoch, sequence = samples[0].identity
+    return (epoch, max(sequence, 100))
+
+
 def gaps(samples, truth, first, end):
     """(first identity, length) of every run of consecutive frames of the publisher without a sample."""
     missing = set(missing_frames(samples, truth, first, end))
@@ -78,12 +84,12 @@ def judge(merged, plain, truths, summary, since, end, faulty, voters, full):
     there at the end, full what their samples are like when everybody is back."""
     truth = {sample.identity: sample for sample in truths}
     figures = Figures(frames=len(truth), levels={sample.level for sample in merged if sample.arrival_s})
-    first = merged[0].identity
+    first = first_judged(merged)
     own_missing = len(missing_frames(merged, truth, first, end))
     # A frame that either of two listeners heard was published: the launch's own count bounds it too, within one epoch.
     one_epoch = len({identity[0] for identity in truth}) == 1
     figures.missing = min(own_missing, summary["voted"]["missing"]) if one_epoch else own_missing
-    figures.plain_gap = largest_gap(plain, truth, plain[0].identity, end)
+    figures.plain_gap = largest_gap(plain, truth, first_judged(plain), end)
     figures.disordered = disordered(merged, end, lambda sample: sample.voter) + disordered(plain, end, lambda sample: 0)
 
     judged = [(identity, error, sample) for identity, error, sample in errors(merged, truth) if identity[0] == since[0]]
