@@ -107,6 +107,7 @@ TEST_P(VendorPairs, report_a_reader_that_asks_for_another_ownership)
 TEST_P(VendorPairs, find_each_other_at_once_most_times_whoever_was_there_first)
 {
     constexpr unsigned rounds = 20, required = 17;  // a busy machine may be late now and then
+    constexpr auto at_once_within = std::chrono::milliseconds{500};  // the fault costs 1 s, a sound start 25 to 170 ms
     const auto [first, second] = GetParam();
     const auto bus = open_on_loopback(first);
     auto publisher = bus->advertise(topics::verdict);
@@ -120,7 +121,7 @@ TEST_P(VendorPairs, find_each_other_at_once_most_times_whoever_was_there_first)
         const auto start = Clock::now();
         ASSERT_TRUE(eventually(*bus, [&] { return publisher.status().matched > 0 && subscription.status().matched > 0; }));
         ASSERT_TRUE(eventually(*other, [&] { return attitudes.status().matched > 0 && verdicts.status().matched > 0; }));
-        at_once += Clock::now() - start < std::chrono::milliseconds{250} ? 1 : 0;
+        at_once += Clock::now() - start < at_once_within ? 1 : 0;
     }
     EXPECT_GE(at_once, required) << "of " << rounds;
 }
