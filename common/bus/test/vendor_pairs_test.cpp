@@ -106,7 +106,7 @@ TEST_P(VendorPairs, report_a_reader_that_asks_for_another_ownership)
 /// Fast DDS tells a node of its endpoints again after 1 s only; a Cyclone DDS node that it found first must not have to wait for that.
 TEST_P(VendorPairs, find_each_other_at_once_most_times_whoever_was_there_first)
 {
-    constexpr unsigned rounds = 20, required = 17;  // a busy machine may be late now and then
+    constexpr unsigned rounds = 20, required = 17;                   // a busy machine may be late now and then
     constexpr auto at_once_within = std::chrono::milliseconds{500};  // the fault costs 1 s, a sound start 25 to 170 ms
     const auto [first, second] = GetParam();
     const auto bus = open_on_loopback(first);
