@@ -58,7 +58,7 @@ AttitudeIntegrator::AttitudeIntegrator(const system::IntegratorProcess& settings
         bus::topics::attitude.spec.name, [this] { return attitudes_.status(); }, true);
     loop.on(bus.subscribe(bus::topics::cluster), [this](const ClusterDescription& description) { on_description(description); });
     loop.on(bus.subscribe(bus::topics::voter_output), [this](const VotedAttitude& voted) { on_voted(voted); });
-    loop.on(bus.subscribe(bus::topics::command), [this](const FaultCommand& command) { on_command(command); });
+    node_.on_order([this](const FaultCommand& command) { on_command(command); });
     verdicts_ = &loop.on(bus.subscribe(bus::topics::verdict), [this](const FaultVerdict& verdict) { on_verdict(verdict); });
     frames_ = &loop.on(bus.subscribe(bus::topics::frame), [this](const SensorFrame& frame) { on_frame(frame); });
     node_.watch(
@@ -266,7 +266,7 @@ void AttitudeIntegrator::rejoin(const VotedAttitude& voted)
 
 void AttitudeIntegrator::on_command(const FaultCommand& command)
 {
-    if (command.unit != settings_.process.node.unit || command.action != static_cast<std::uint8_t>(CommandAction::reset_attitude)) return;
+    if (command.action != static_cast<std::uint8_t>(CommandAction::reset_attitude)) return;
     publish_pending();
     refuse_waiting_reset("had not come when another order did");
     const double frames_ahead = command.value - static_cast<double>(last_.sequence);

@@ -12,6 +12,7 @@
 #include <functional>
 #include <iterator>
 #include <numeric>
+#include <utility>
 
 namespace quorient::detector {
 
@@ -43,7 +44,7 @@ ParityFdi::ParityFdi(const system::DetectorProcess& settings, bus::Bus& bus, run
     });
     loop.on(bus.subscribe(bus::topics::attitude), [this](const AttitudeState& attitude) { on_lane_attitude(attitude); });
     loop.on(bus.subscribe(bus::topics::voter_output), [this](const VotedAttitude& voted) { on_voted(voted); });
-    loop.on(bus.subscribe(bus::topics::command), [this](const FaultCommand& command) { on_command(command); });
+    node_.on_order([this](const FaultCommand& command) { on_command(command); });
     frames_ = &loop.on(bus.subscribe(bus::topics::frame), [this](const SensorFrame& frame) { on_frame(frame); });
     node_.watch(
         bus::topics::frame.spec.name, [this] { return frames_->status(); }, true);
@@ -244,13 +245,14 @@ void ParityFdi::adopt_memories()
 
 void ParityFdi::on_command(const FaultCommand& command)
 {
-    if (command.unit != settings_.process.node.unit || command.action != static_cast<std::uint8_t>(CommandAction::readmit)) return;
-    const bool done = monitor_ && monitor_->readmit(command.axes);
-    adopting_ = false;  // what others remember is older than this order
+    if (command.action != static_cast<std::uint8_t>(CommandAction::readmit)) return;
+    const bool returned = monitor_ && monitor_->readmit(command.axes);
+    const bool forgotten = std::exchange(adopting_, false);  // what others remember is older than this order
     absence_ = {};
+    const char* outcome = returned ? "readmits" : forgotten ? "takes over no exclusion of" : "has not isolated";
+    const bool done = returned || forgotten;
     node_.report(done ? EventCode::command_done : EventCode::command_refused, done ? Severity::info : Severity::warning_low,
-                 identity_of(last_), command.axes,
-                 fmt::format("{} {}", done ? "readmits" : "has not isolated", runtime::describe_axes(command.axes)), command.request);
+                 identity_of(last_), command.axes, fmt::format("{} {}", outcome, runtime::describe_axes(command.axes)), command.request);
 }
 
 }  // namespace quorient::detector

@@ -35,7 +35,7 @@ SensorPublisher::SensorPublisher(const system::SensorSettings& settings, std::un
     node_.watch(
         bus::topics::frame.spec.name, [this] { return frames_.status(); }, true);
     loop.on(bus.subscribe(bus::topics::status), [this](const ServiceStatus& status) { on_status(status); });
-    loop.on(bus.subscribe(bus::topics::command), [this](const FaultCommand& command) { on_command(command); });
+    node_.on_order([this](const FaultCommand& command) { on_command(command); });
     source_->attach(bus, loop);
     descriptions_.publish(source_->description());
     node_.set_state(ServiceState::ready);
@@ -123,7 +123,6 @@ bool SensorPublisher::publish(std::uint64_t sequence)
 
 void SensorPublisher::on_command(const FaultCommand& command)
 {
-    if (command.unit != settings_.process.node.unit) return;
     const auto identity = identity_of(frame_);
     if (command.action == static_cast<std::uint8_t>(CommandAction::inject)) {
         const auto fault = simulation::from_command(command, scenario_s());

@@ -1,5 +1,6 @@
 #include "quorient/runtime/node.hpp"
 
+#include "quorient/bus/topics.hpp"
 #include "quorient/runtime/options.hpp"
 #include "quorient/runtime/text.hpp"
 
@@ -96,6 +97,22 @@ bool Node::report_throttled(EventCode code, Severity severity, Identity identity
     if (last != 0 && now - last < second_ns) return false;
     last = now;
     report(code, severity, identity, axes, text);
+    return true;
+}
+
+void Node::on_order(std::function<void(const FaultCommand&)> handler)
+{
+    loop_.on(bus_.subscribe(bus::topics::command), [this, handler = std::move(handler)](const FaultCommand& order) {
+        if (order.unit == settings_.unit && is_new(order.request)) handler(order);
+    });
+}
+
+/// Requests are numbered by who gives them; 0 is nobody's number.
+bool Node::is_new(std::uint64_t request)
+{
+    if (request == 0) return true;
+    if (std::find(request_.begin(), request_.end(), request) != request_.end()) return false;
+    request_[request_count_++ % request_.size()] = request;
     return true;
 }
 

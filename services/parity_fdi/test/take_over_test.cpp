@@ -156,6 +156,36 @@ TEST_F(TakeOver, does_not_bring_back_what_an_order_has_readmitted)
     EXPECT_EQ(rig.answers(9).front().code, static_cast<std::uint8_t>(EventCode::command_done));
 }
 
+TEST_F(TakeOver, obeys_an_order_that_comes_before_it_knows_of_any_exclusion)
+{
+    start();
+    order_readmission();
+    ASSERT_EQ(rig.answers(9).size(), 1U);
+    EXPECT_EQ(rig.answers(9).front().code, static_cast<std::uint8_t>(EventCode::command_done));
+    lane_remembers(axis_1);
+    frames(100);
+    EXPECT_EQ(rig.verdict().isolated_mask, 0U);
+}
+
+TEST_F(TakeOver, refuses_to_readmit_what_it_judges_healthy)
+{
+    start();
+    run_until_it_judges();
+    order_readmission();
+    ASSERT_EQ(rig.answers(9).size(), 1U);
+    EXPECT_EQ(rig.answers(9).front().code, static_cast<std::uint8_t>(EventCode::command_refused));
+}
+
+TEST_F(TakeOver, obeys_a_repeated_order_once)
+{
+    start();
+    lane_remembers(axis_1);
+    frames(3);
+    order_readmission();
+    order_readmission();
+    EXPECT_EQ(rig.answers(9).size(), 1U);
+}
+
 TEST_F(TakeOver, of_an_exclusion_of_another_epoch_holds_from_the_first_frame_of_this_one)
 {
     lane_remembers(axis_1, 12345, Rig::first_epoch - 1);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "quorient/bus/bus.hpp"
+#include "quorient/messages/fault_command.hpp"
 #include "quorient/messages/health_event.hpp"
 #include "quorient/messages/identity.hpp"
 #include "quorient/messages/service_status.hpp"
@@ -55,6 +56,9 @@ public:
     /// Warns when this endpoint meets an incompatible peer, when it matched nobody within 5 s, and when it has not the transport asked for.
     void watch(std::string_view what, std::function<bus::EndpointStatus()> status, bool must_match);
 
+    /// Orders to this unit, each once: who gives one repeats it until everybody whom it concerns has answered.
+    void on_order(std::function<void(const FaultCommand&)> handler);
+
     /// The endpoint whose transport and peers the status tells.
     void main_output(std::function<bus::EndpointStatus()> status) { main_output_ = std::move(status); }
 
@@ -77,6 +81,7 @@ private:
         bool told_fallback = false;
     };
 
+    bool is_new(std::uint64_t request);
     void publish_status();
     void look_at_endpoints();
     void look_at_shared_memory();
@@ -94,6 +99,8 @@ private:
     std::array<std::int64_t, 256> last_told_ns_{};
     std::array<std::int64_t, 1024> latency_ns_{};  // ring of the newest
     std::size_t latency_count_ = 0;
+    std::array<std::uint64_t, 16> request_{};  // ring of the newest
+    std::size_t request_count_ = 0;
     std::vector<Watched> watched_;
     std::function<bus::EndpointStatus()> main_output_;
     bool told_shared_memory_lost_ = false;
