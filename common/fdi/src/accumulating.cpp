@@ -25,12 +25,35 @@ constexpr double contradicting_level = 0.9;
 /// Rounds of estimating a step and its beginning by turns.
 constexpr int onset_rounds = 6;
 
+/// In the gated sums a frame counts less where an instrument contradicts the others by more than noise does this often.
+constexpr double gate_tail = 1e-3;
+
+/// Gated sums over fewer frames tell nothing that the others do not.
+constexpr std::size_t shortest_gated = 8;
+
 constexpr double default_margin = 1.25;
 constexpr double default_false_alarms_per_hour = 0.1;
 
 constexpr std::size_t stride_of(std::size_t window)
 {
     return std::max<std::size_t>(1, window / looks_per_window);
+}
+
+bool is_good(const MotionNoise& noise)
+{
+    const auto terms = {noise.jitter_along_s, noise.jitter_across_s, noise.roughness_s,
+                        noise.axes_error,     noise.rate_error,      noise.bias_floor_rad_s};
+    return std::all_of(terms.begin(), terms.end(), [](double term) { return term >= 0 && std::isfinite(term); });
+}
+
+/// No outliers; the constant error that calibration left is that of the other sums.
+MotionNoise motion_of(const GatedNoise& gated, const MotionNoise& other)
+{
+    return {.jitter_along_s = gated.jitter_along_s,
+            .jitter_across_s = gated.jitter_across_s,
+            .axes_error = gated.axes_error,
+            .rate_error = gated.rate_error,
+            .bias_floor_rad_s = other.bias_floor_rad_s};
 }
 
 }  // namespace
@@ -52,27 +75,32 @@ tl::expected<std::unique_ptr<Accumulating>, std::string> Accumulating::make(cons
     if (!sigma) return tl::unexpected(sigma.error());
     if (!(cluster.interval_s > 0))
         return tl::unexpected(std::string("accumulating: false alarms are counted per hour, so the cluster's interval_s must be known"));
-    for (const double figure :
-         {motion.jitter_along_s, motion.jitter_across_s, motion.roughness_s, motion.axes_error, motion.rate_error, motion.bias_floor_rad_s})
-        if (!(figure >= 0 && std::isfinite(figure)))
-            return tl::unexpected(std::string("accumulating: the terms of the motion noise must be finite and at least 0"));
+    const MotionNoise calmer = settings.gated_noise ? motion_of(*settings.gated_noise, motion) : MotionNoise{};
+    if (!is_good(motion) || !is_good(calmer))
+        return tl::unexpected(std::string("accumulating: the terms of the motion noise must be finite and at least 0"));
     auto array = InstrumentArray::make(cluster, sigma->cwiseAbs2());
     if (!array) return tl::unexpected("accumulating: " + array.error());
-    return std::unique_ptr<Accumulating>(new Accumulating(settings, cluster, ArraySums(*array, motion)));
+    std::optional<ArraySums> gated;
+    if (settings.gated_noise) gated.emplace(*array, calmer, chi_square_quantile(3, gate_tail));
+    return std::unique_ptr<Accumulating>(new Accumulating(settings, cluster, ArraySums(*array, motion), std::move(gated)));
 }
 
-Accumulating::Accumulating(const DetectorSettings& settings, const geometry::SensorCluster& cluster, ArraySums sums)
+Accumulating::Accumulating(const DetectorSettings& settings, const geometry::SensorCluster& cluster, ArraySums sums,
+                           std::optional<ArraySums> gated)
     : sums_(std::move(sums)),
+      gated_(std::move(gated)),
       all_(cluster.all()),
       instruments_alone_(settings.instruments),
       margin_(settings.margin.value_or(default_margin))
 {
     const double frames_per_hour = 3600 / cluster.interval_s;
     false_alarms_per_hour_ = settings.pfa ? *settings.pfa * frames_per_hour : default_false_alarms_per_hour;
+    const auto gated_count = gated_ ? std::count_if(windows.begin(), windows.end(), [](std::size_t w) { return w >= shortest_gated; }) : 0;
+    const double tried = static_cast<double>(windows.size()) + static_cast<double>(gated_count);
     const double hypotheses = static_cast<double>(cluster.size()) * 4 / 3;  // every axis, and every instrument
     for (std::size_t i = 0; i < windows.size(); ++i) {
         const double looks_per_hour = frames_per_hour / static_cast<double>(stride_of(windows[i]));
-        const double share = false_alarms_per_hour_ / static_cast<double>(windows.size());
+        const double share = false_alarms_per_hour_ / tried;
         const double tail = std::min(0.5, share / (looks_per_hour * hypotheses));
         limits_[i] = {.axis = chi_square_quantile(1, tail), .instrument = chi_square_quantile(3, tail)};
     }
@@ -88,22 +116,32 @@ void Accumulating::exclude(AxisMask excluded)
     if ((excluded & all_) == excluded_) return;
     excluded_ = excluded & all_;
     sums_.exclude(excluded_);
+    if (gated_) gated_->exclude(excluded_);
 }
 
 void Accumulating::reset()
 {
     sums_.reset();
+    if (gated_) gated_->reset();
     alert_ = false;
 }
 
-Accumulating::Finding Accumulating::examine(std::size_t window, const Limits& limits) const
+Accumulating::Finding Accumulating::examine(const ArraySums& sums, std::size_t window, const Limits& limits) const
 {
-    const ArraySums::Fit fit = sums_.fit(window);
+    const ArraySums::Fit fit = sums.fit(window);
     Finding finding;
     finding.window = window;
     for (std::size_t m = 0; m < sums_.array().size(); ++m)
         if (sums_.array().compared(m)) weigh(m, fit, limits, finding);
     return finding;
+}
+
+Accumulating::Finding Accumulating::examine(std::size_t window, const Limits& limits) const
+{
+    const Finding usual = examine(sums_, window, limits);
+    if (!gated_ || window < shortest_gated) return usual;
+    const Finding gated = examine(*gated_, window, limits);
+    return gated.certainty > usual.certainty ? gated : usual;
 }
 
 void Accumulating::Finding::consider(double with_certainty, AxisMask axes, const Hypothesis& what)
@@ -217,6 +255,7 @@ void Accumulating::assess(const Measurement& measurement, Assessment& assessment
     assessment.threshold = 1;
     if (detectable_remaining() == 0) return;
     const ArraySums::Added added = sums_.add(measurement);
+    if (gated_) gated_->add(measurement);
     if (added == ArraySums::Added::unusable) assessment.outcome = Outcome::warming_up;  // this frame tells nothing
     if (added != ArraySums::Added::counted || sums_.size() < 2) return;
 

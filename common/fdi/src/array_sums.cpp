@@ -19,8 +19,8 @@ constexpr double roughness_in_weight = 0.03;
 
 }  // namespace
 
-ArraySums::ArraySums(const InstrumentArray& array, const MotionNoise& motion)
-    : array_(array), motion_(motion), scale_(3 / array.mean_information().trace()), totals_(history_length)
+ArraySums::ArraySums(const InstrumentArray& array, const MotionNoise& motion, std::optional<double> gate)
+    : array_(array), motion_(motion), gate_(gate), scale_(3 / array.mean_information().trace()), totals_(history_length)
 {
     for (Totals& totals : totals_) {
         totals.sum.setZero(3, static_cast<Eigen::Index>(array.size()));
@@ -86,6 +86,21 @@ Eigen::Matrix3d ArraySums::motion_covariance(const Pending& frame, const Eigen::
     return blow * (along - across) * spread + (blow * across * spread.trace() + outliers) * Eigen::Matrix3d::Identity();
 }
 
+/// How much of a frame counts. `information`: (C + M_k)^-1.
+double ArraySums::share_of(const Pending& frame, const Eigen::Matrix3d& information) const
+{
+    if (!gate_ || array_.compared_count() < 2) return 1;
+    const auto count = static_cast<double>(array_.compared_count());
+    const Eigen::Vector3d mean = frame.body.rowwise().sum() / count;  // who is not compared has 0
+    double largest = 0;
+    for (std::size_t m = 0; m < array_.size(); ++m) {
+        if (!array_.compared(m)) continue;
+        const Eigen::Vector3d deviation = frame.body.col(static_cast<Eigen::Index>(m)) - mean;
+        largest = std::max(largest, deviation.dot(information * deviation) * count / (count - 1));
+    }
+    return std::min(1.0, *gate_ / largest);
+}
+
 void ArraySums::count_in(const Pending& frame, const Eigen::Vector3d& acceleration_after)
 {
     const double h = frame.interval_s;
@@ -95,7 +110,8 @@ void ArraySums::count_in(const Pending& frame, const Eigen::Vector3d& accelerati
     wildness_ = std::max(squared * blow, wildness_ + (squared - wildness_) * calming);
     const double rough = h * h * wildness_;
     const Eigen::Matrix3d moving = motion_covariance(frame, acceleration_after, blow, rough) + array_.blindness(frame.saturated, h);
-    const Eigen::Matrix3d weight = scale_ * (array_.mean_covariance() + moving).inverse();
+    const Eigen::Matrix3d information = (array_.mean_covariance() + moving).inverse();
+    const Eigen::Matrix3d weight = scale_ * share_of(frame, information) * information;
     const double largest = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>().computeDirect(weight, Eigen::EigenvaluesOnly).eigenvalues()(2);
 
     const Totals& before = total(0);
@@ -124,7 +140,7 @@ Eigen::Matrix3d ArraySums::common_covariance(std::size_t window) const
     const Eigen::Matrix3d constant =
         motion_.bias_floor_rad_s * (newest.biased - oldest.biased) + motion_.rate_error * (newest.turned - oldest.turned);
     double roughest = 0;
-    for (std::size_t age = 0; age < window; ++age) roughest = std::max(roughest, total(age).roughness);
+    for (std::size_t age = 0; motion_.roughness_s > 0 && age < window; ++age) roughest = std::max(roughest, total(age).roughness);
     const double outlier = motion_.roughness_s * motion_.roughness_s * roughest;
     Eigen::Matrix3d floors = constant * constant.transpose();
     for (std::size_t j = 0; j < 3; ++j) {

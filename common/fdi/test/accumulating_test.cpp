@@ -53,7 +53,7 @@ public:
         const double t = static_cast<double>(sequence) * interval_s;
         Eigen::Vector3d rate = Eigen::Vector3d::Zero();
         for (std::size_t axis = 0; axis < cluster.size(); ++axis) {
-            if (axis % 3 == 0) rate = motion(t + jitter_s * normal(random_));
+            if (axis % 3 == 0) rate = motion(t + instant_s() + jitter_s * normal(random_));
             const double measured = cluster.axes.row(static_cast<Eigen::Index>(axis)).dot(rate) + rate_sigma * normal(random_);
             made.increment[axis] = measured * interval_s;
         }
@@ -61,9 +61,16 @@ public:
     }
 
     double jitter_s = 0.1e-3;
+    double outlier_s = 0;  ///< once in a hundred frames an instrument samples this late
     geometry::SensorCluster cluster;
 
 private:
+    double instant_s()
+    {
+        if (outlier_s == 0) return 0;
+        return std::bernoulli_distribution(0.01)(random_) ? outlier_s : 0;
+    }
+
     std::mt19937_64 random_;
 };
 
@@ -310,6 +317,43 @@ TEST(Accumulating, expects_as_much_of_the_motion_as_it_is_told)
     EXPECT_EQ(blamed_of_a_wild_array(8, 60), 0b000111000U);
 }
 
+constexpr GatedNoise mostly_calm{.jitter_along_s = 0.15e-3, .jitter_across_s = 0.05e-3};
+
+/// Frames from the onset of a fault in violent motion, with outliers of 2 ms, until its instrument is isolated; `never` if it is not.
+std::uint64_t found_among_outliers(std::uint64_t seed, std::optional<GatedNoise> gated_noise, double bias_deg_s, std::uint64_t frames)
+{
+    constexpr std::uint64_t onset = 600;
+    Array array(seed);
+    array.outlier_s = 2e-3;
+    DetectorSettings settings{.method = "accumulating", .gated_noise = gated_noise};
+    settings.instruments = true;
+    auto monitor = FaultMonitor::make(settings, {}, array.cluster).value();
+    for (std::uint64_t sequence = 0; sequence < onset + frames; ++sequence) {
+        SensorFrame frame = array.frame(sequence, Array::violent);
+        if (sequence >= onset) frame.increment[4] += bias_deg_s * degree * interval_s;
+        const AxisMask isolated = monitor.assess(frame).isolated_mask;
+        if (isolated == 0) continue;
+        EXPECT_EQ(isolated, 0b000111000U) << "seed " << seed;
+        return sequence - onset;
+    }
+    return never;
+}
+
+TEST(Accumulating, finds_small_faults_among_outliers_sooner_with_gated_sums)
+{
+    for (std::uint64_t seed = 60; seed < 66; ++seed) {
+        const std::uint64_t without = found_among_outliers(seed, std::nullopt, 5, 2000);
+        const std::uint64_t with = found_among_outliers(seed, mostly_calm, 5, 2000);
+        EXPECT_LE(with, 125U) << "seed " << seed << ": later than 2 s";
+        EXPECT_LE(2 * with, without) << "seed " << seed;
+    }
+}
+
+TEST(Accumulating, is_silent_among_outliers_with_gated_sums)
+{
+    EXPECT_EQ(found_among_outliers(66, mostly_calm, 0, 40'000), never);
+}
+
 TEST(Accumulating, refuses_what_it_cannot_serve_and_says_why)
 {
     const auto refusal = [](const DetectorSettings& settings, const geometry::SensorCluster& cluster) {
@@ -325,6 +369,7 @@ TEST(Accumulating, refuses_what_it_cannot_serve_and_says_why)
     cluster.sigma.setZero();
     EXPECT_THAT(refusal({}, cluster), ::testing::HasSubstr("sigma"));
     EXPECT_FALSE(Accumulating::make({}, Array(1).cluster, {.jitter_along_s = -1}));
+    EXPECT_FALSE(Accumulating::make({.gated_noise = GatedNoise{.axes_error = -1}}, Array(1).cluster));
     EXPECT_THAT(refusal({.motion_noise = -1}, cluster), ::testing::HasSubstr("motion_noise"));
 }
 

@@ -40,7 +40,11 @@ TEST(FaultMonitor, allocates_nothing_per_frame)
         cluster.interval_s = 0.005;
         cluster.sigma.setConstant(1e-6);
         cluster.quantum.setConstant(1e-6);
-        auto monitor = FaultMonitor::make({.method = std::string(method.name), .tolerance = 1e-5, .bound = 1e-5, .threshold = 1e-4},
+        auto monitor = FaultMonitor::make({.method = std::string(method.name),
+                                           .tolerance = 1e-5,
+                                           .bound = 1e-5,
+                                           .threshold = 1e-4,
+                                           .gated_noise = GatedNoise{.jitter_along_s = 1e-6}},
                                           {.readmit_after_s = 0.5}, cluster);
         ASSERT_TRUE(monitor) << monitor.error();
         AxisMask isolated = 0;

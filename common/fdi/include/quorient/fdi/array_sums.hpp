@@ -24,6 +24,9 @@ namespace quorient::fdi {
 ///   outliers: kappa^2 max over the window of (|W_k| rough_k)^2, rough_k the lately largest |a| h.
 /// Across a turn what little is certain then counts fully, and in the calm moments all of it.
 ///
+/// Gated sums: where an instrument contradicts the mean of the others by a chi-square beyond the gate, W_k is less by the factor of the
+/// two, again the same for all instruments. c W then bounds the covariance of what is left: sum W_k (C + M_k) W_k <= c W.
+///
 /// Each frame waits for its successor, which tells the acceleration after it: one frame of delay.
 class ArraySums {
 public:
@@ -52,7 +55,8 @@ public:
         Contradiction contradiction(std::size_t instrument) const;
     };
 
-    ArraySums(const InstrumentArray& array, const MotionNoise& motion);
+    /// @param gate  chi-square of three degrees of freedom; absent: all frames count fully.
+    ArraySums(const InstrumentArray& array, const MotionNoise& motion, std::optional<double> gate = {});
 
     const InstrumentArray& array() const { return array_; }
     void exclude(AxisMask excluded);
@@ -102,11 +106,13 @@ private:
     Pending pending_of(const Measurement& measurement) const;
     void count_in(const Pending& frame, const Eigen::Vector3d& acceleration_after);
     Eigen::Matrix3d motion_covariance(const Pending& frame, const Eigen::Vector3d& acceleration_after, double blow, double rough) const;
+    double share_of(const Pending& frame, const Eigen::Matrix3d& information) const;
     Eigen::Matrix3d common_covariance(std::size_t window) const;
     const Totals& total(std::size_t age) const { return totals_[(next_ + history_length - 1 - age) % history_length]; }
 
     InstrumentArray array_;
     MotionNoise motion_;
+    std::optional<double> gate_;
     double scale_;                ///< c: W_k has trace 3 at rest
     std::vector<Totals> totals_;  ///< ring
     std::size_t next_ = 0;

@@ -5,6 +5,14 @@
 
 namespace quorient::fdi {
 
+/// What a moving array shows beyond its noise at rest in all but its worst frames: the terms of MotionNoise of the same names.
+struct GatedNoise {
+    double jitter_along_s = 0;
+    double jitter_across_s = 0;
+    double axes_error = 0;
+    double rate_error = 0;
+};
+
 /// Everything a user can set about detection; what is absent takes the method's default.
 /// Lengths of time in seconds, tolerances in the unit of the measurement (rad of one increment for gyros).
 struct DetectorSettings {
@@ -18,7 +26,8 @@ struct DetectorSettings {
     std::optional<double> margin{};
     std::optional<double> doubt{};         ///< subset: share of right isolations held back because one more, small fault is not ruled out
     std::optional<double> motion_noise{};  ///< accumulating: times the usual errors of a moving array, see usual_motion_noise
-    bool instruments = false;              ///< a fault takes a whole instrument
+    std::optional<GatedNoise> gated_noise{};  ///< accumulating: of the gated sums; absent: there are none
+    bool instruments = false;                 ///< a fault takes a whole instrument
     bool relaxed = false;
 };
 
