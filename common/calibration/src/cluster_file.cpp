@@ -17,7 +17,8 @@ namespace quorient::calibration {
 namespace {
 
 constexpr std::array<std::string_view, 6> top_keys{"name", "kind", "interval_s", "origin", "motion_noise", "axes"};
-constexpr std::array<std::string_view, 3> noise_keys{"along_s", "across_s", "level"};
+constexpr std::array<std::string_view, 4> noise_keys{"along_s", "across_s", "level", "gated"};
+constexpr std::array<std::string_view, 4> gated_keys{"along_s", "across_s", "axes", "rate"};
 constexpr std::array<std::string_view, 9> axis_keys{"instrument", "direction",   "gain",        "bias_rad_s", "bias_spread_rad_s",
                                                     "sigma_rad",  "quantum_rad", "range_rad_s", "position_m"};
 
@@ -30,6 +31,16 @@ std::string_view text_of(const Name<Size>& name)
 std::string triple(const std::array<double, 3>& values)
 {
     return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", values[0], values[1], values[2]);
+}
+
+std::string noise_text(const CalibratedCluster& cluster)
+{
+    std::string text = fmt::format("{{along_s: {:.17g}, across_s: {:.17g}, level: {:.17g}", cluster.jitter_along_s, cluster.jitter_across_s,
+                                   cluster.motion_level);
+    if (const auto& gated = cluster.gated)
+        text += fmt::format(", gated: {{along_s: {:.17g}, across_s: {:.17g}, axes: {:.17g}, rate: {:.17g}}}", gated->along_s,
+                            gated->across_s, gated->axes, gated->rate);
+    return text + "}";
 }
 
 /// Reads nodes and gathers what is wrong with them.
@@ -124,6 +135,21 @@ std::uint8_t instrument_number(ClusterDescription& description, std::string_view
     return description.instrument_count++;
 }
 
+void read_noise(Reading& reading, const YAML::Node& noise, CalibratedCluster& cluster)
+{
+    if (!noise || !reading.is_map_of(noise, noise_keys)) return;
+    reading.number(noise, "along_s", cluster.jitter_along_s, 0);
+    reading.number(noise, "across_s", cluster.jitter_across_s, 0);
+    reading.number(noise, "level", cluster.motion_level, 0, false);
+    const YAML::Node gated = noise["gated"];
+    if (!gated || !reading.is_map_of(gated, gated_keys)) return;
+    GatedTerms& terms = cluster.gated.emplace();
+    reading.number(gated, "along_s", terms.along_s, 0);
+    reading.number(gated, "across_s", terms.across_s, 0);
+    reading.number(gated, "axes", terms.axes, 0);
+    reading.number(gated, "rate", terms.rate, 0);
+}
+
 void read_axis(Reading& reading, const YAML::Node& node, std::size_t axis, CalibratedCluster& cluster)
 {
     if (!reading.is_map_of(node, axis_keys)) return;
@@ -160,10 +186,8 @@ std::string to_yaml(const CalibratedCluster& cluster)
     std::string text = fmt::format(
         "# A sensor cluster as calibrated. corrected increment = (raw - bias_rad_s * interval) / gain;\n"
         "# directions are unit vectors in the body frame, sigma_rad is of one corrected increment.\n"
-        "name: {:?}\nkind: gyro\ninterval_s: {:.17g}\norigin: {:?}\nmotion_noise: {{along_s: {:.17g}, across_s: {:.17g}, level: "
-        "{:.17g}}}\naxes:\n",
-        text_of(description.name), description.interval_s, cluster.origin, cluster.jitter_along_s, cluster.jitter_across_s,
-        cluster.motion_level);
+        "name: {:?}\nkind: gyro\ninterval_s: {:.17g}\norigin: {:?}\nmotion_noise: {}\naxes:\n",
+        text_of(description.name), description.interval_s, cluster.origin, noise_text(cluster));
     for (std::size_t axis = 0; axis < description.axis_count; ++axis) {
         text += fmt::format(
             "  - {{instrument: {:?}, direction: {}, gain: {:.17g},\n"
@@ -189,12 +213,7 @@ tl::expected<CalibratedCluster, std::string> parse_cluster(const std::string& te
             set_name(cluster.description.name, reading.text(root, "name", 32));
             cluster.origin = reading.text(root, "origin", 1000);
             reading.number(root, "interval_s", cluster.description.interval_s, 1e-9);
-            const YAML::Node noise = root["motion_noise"];
-            if (noise && reading.is_map_of(noise, noise_keys)) {
-                reading.number(noise, "along_s", cluster.jitter_along_s, 0);
-                reading.number(noise, "across_s", cluster.jitter_across_s, 0);
-                reading.number(noise, "level", cluster.motion_level, 0, false);
-            }
+            read_noise(reading, root["motion_noise"], cluster);
             read_axes(reading, root, cluster);
         }
     } catch (const YAML::Exception& error) {  // yaml-cpp's only way to report a syntax error

@@ -26,6 +26,7 @@ CalibratedCluster some_cluster()
     }
     cluster.jitter_along_s = 1.0 / 3e3;
     cluster.motion_level = 4.0 / 3;
+    cluster.gated = {.along_s = 1.0 / 7e3, .across_s = 1.0 / 9e3, .axes = 1e-3 / 3, .rate = 1e-4 / 3};
     cluster.origin = "log \"one\".bin";
     return cluster;
 }
@@ -51,6 +52,9 @@ TEST(ClusterFile, reads_back_bit_for_bit)
     EXPECT_EQ(read->gain, cluster.gain);
     EXPECT_EQ(read->jitter_along_s, cluster.jitter_along_s);
     EXPECT_EQ(read->motion_level, cluster.motion_level);
+    ASSERT_TRUE(read->gated);
+    EXPECT_EQ(read->gated->across_s, cluster.gated->across_s);
+    EXPECT_EQ(read->gated->rate, cluster.gated->rate);
     EXPECT_EQ(read->origin, cluster.origin);
 }
 
@@ -61,6 +65,18 @@ TEST(ClusterFile, may_not_know_how_wild_the_motion_noise_is)
     const auto read = parse_cluster(replaced(to_yaml(cluster), ", level: 0", ""), "cluster.yaml");
     ASSERT_TRUE(read) << read.error();
     EXPECT_EQ(read->motion_level, 0);
+}
+
+TEST(ClusterFile, has_gated_terms_all_or_none)
+{
+    CalibratedCluster cluster = some_cluster();
+    const auto lacking = parse_cluster(replaced(to_yaml(cluster), ", axes: ", ", rates: "), "cluster.yaml");
+    ASSERT_FALSE(lacking);
+    EXPECT_THAT(lacking.error(), AllOf(HasSubstr("unknown key 'rates'"), HasSubstr("'axes' is missing")));
+    cluster.gated.reset();
+    const auto without = parse_cluster(to_yaml(cluster), "cluster.yaml");
+    ASSERT_TRUE(without) << without.error();
+    EXPECT_FALSE(without->gated);
 }
 
 TEST(ClusterFile, names_every_problem_with_its_place)

@@ -25,6 +25,15 @@ void parse_verdict(Section& section, fdi::VerdictSettings& verdict)
     if (verdict.confirm_required > verdict.confirm_window) section.problem("confirm_required", "cannot be more than confirm_window");
 }
 
+/// What the calibration of the log tells of its motion noise.
+void take_calibration(const calibration::CalibratedCluster& cluster, fdi::DetectorSettings& detection)
+{
+    if (cluster.motion_level > 0) detection.motion_noise = cluster.motion_level;
+    if (const auto& gated = cluster.gated)
+        detection.gated_noise = {
+            .jitter_along_s = gated->along_s, .jitter_across_s = gated->across_s, .axes_error = gated->axes, .rate_error = gated->rate};
+}
+
 void parse_detection(Section section, const System& system, DetectorProcess& detector)
 {
     auto& detection = detector.detection;
@@ -37,8 +46,7 @@ void parse_detection(Section section, const System& system, DetectorProcess& det
     section.whole("max_faults", detection.max_faults);
     section.number("margin", detection.margin, runtime::not_negative);
     section.number("doubt", detection.doubt, {.lowest = 0, .highest = 1});
-    if (const auto& log = system.sensor.source.log; log && log->calibration && log->calibration->motion_level > 0)
-        detection.motion_noise = log->calibration->motion_level;
+    if (const auto& log = system.sensor.source.log; log && log->calibration) take_calibration(*log->calibration, detection);
     section.number("motion_noise", detection.motion_noise, runtime::above_zero);
     section.boolean("instruments", detection.instruments);
     section.boolean("relaxed", detection.relaxed);

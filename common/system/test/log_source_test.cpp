@@ -27,6 +27,7 @@ protected:
         cluster.description.axis_count = 9;
         cluster.gain.fill(1);
         cluster.motion_level = 1.5;
+        cluster.gated = {.along_s = 1e-3, .across_s = 2e-4, .axes = 3e-3, .rate = 4e-4};
         for (std::size_t axis = 0; axis < 9; ++axis) {
             cluster.description.axis[axis][axis % 3] = 1;
             cluster.description.sigma[axis] = 1e-5;
@@ -82,6 +83,17 @@ TEST_F(LogSource, does_not_look_for_its_calibration_where_the_process_was_starte
     const auto system = loaded("file: a.csv, calibration: cluster.yaml");
     ASSERT_FALSE(system);
     EXPECT_THAT(system.error(), HasSubstr((folder_ / "cluster.yaml").string()));
+}
+
+TEST_F(LogSource, tells_the_detectors_the_gated_terms_of_its_calibration)
+{
+    const auto gated = loaded("file: a.csv, calibration: cluster.yaml")->lanes.front().detector.detection.gated_noise;
+    ASSERT_TRUE(gated);
+    EXPECT_EQ(gated->jitter_along_s, 1e-3);
+    EXPECT_EQ(gated->jitter_across_s, 2e-4);
+    EXPECT_EQ(gated->axes_error, 3e-3);
+    EXPECT_EQ(gated->rate_error, 4e-4);
+    EXPECT_FALSE(loaded("file: a.csv")->lanes.front().detector.detection.gated_noise);
 }
 
 TEST_F(LogSource, tells_the_detectors_the_motion_noise_of_its_calibration_unless_they_are_told_another)

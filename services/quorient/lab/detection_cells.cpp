@@ -98,6 +98,7 @@ fdi::FaultMonitor accumulating(const RecordedArray& array, bool instruments, dou
     fdi::DetectorSettings settings{.method = "accumulating"};
     settings.instruments = instruments;
     settings.motion_noise = factor * array.motion_noise.value_or(1);
+    settings.gated_noise = array.gated_noise;
     auto monitor = fdi::FaultMonitor::make(settings, fdi::VerdictSettings{}, array.cluster);
     assert(monitor);  // recorded arrays have three instruments or more, with noise and interval
     return std::move(*monitor);

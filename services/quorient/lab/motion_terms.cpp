@@ -42,7 +42,7 @@ std::vector<Fitted> all_fits(const std::vector<Recording>& recordings, const Run
 {
     std::vector<Fitted> fits;
     for (const Recording& recording : recordings) {
-        const auto halves = held_out_halves(recording.samples, recording.nominal, recording.calibration.rest);
+        const auto halves = cli::held_out_halves(recording.samples, recording.nominal, recording.calibration.rest);
         if (halves.size() != 2) cli::fail(fmt::format("{}: half of its motion is not enough for a calibration", recording.name));
         fits.push_back({&recording, recording.name, halves, {}, {}});
         fits.push_back({&recording, recording.name + ", one half", {halves[0]}, {halves[1]}, {}});

@@ -1,12 +1,14 @@
 #pragma once
 
-#include "held_out.hpp"
 #include "quorient/calibration/sample.hpp"
 #include "quorient/fdi/motion_noise.hpp"
+#include "verbs/held_out.hpp"
 
 #include <vector>
 
 namespace quorient::lab {
+
+using cli::HeldOut;
 
 /// What the accumulating detector makes of parts of a recording with some motion noise.
 struct Standing {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "quorient/calibration/calibration.hpp"
+#include "quorient/fdi/settings.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"
 #include "quorient/messages/sensor_frame.hpp"
 #include "quorient/recording/reader.hpp"
@@ -31,7 +32,8 @@ struct RecordedArray {
     std::size_t recording = 0;      ///< place in the list of recordings
     std::size_t calibrated_by = 0;  ///< place of the other one
     geometry::SensorCluster cluster;
-    std::optional<double> motion_noise{};  ///< fdi::DetectorSettings::motion_noise, as the other recording shows it
+    std::optional<double> motion_noise{};          ///< fdi::DetectorSettings::motion_noise, as the other recording shows it
+    std::optional<fdi::GatedNoise> gated_noise{};  ///< likewise
     std::vector<SensorFrame> frames;
     std::vector<calibration::Segment> rest;
     calibration::Segment motion;  ///< the longest stretch without rest

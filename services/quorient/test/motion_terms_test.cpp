@@ -1,5 +1,6 @@
 #include "lab/motion_terms_fit.hpp"
 #include "quorient/geometry/layouts.hpp"
+#include "verbs/gated_terms.hpp"
 
 #include <gtest/gtest.h>
 #include <algorithm>
@@ -67,7 +68,7 @@ Recorded recorded(double moving_s, std::uint64_t seed)
 TEST(HeldOut, halves_share_the_motion_and_are_calibrated_without_what_they_play)
 {
     const Recorded log = recorded(30, 1);
-    const auto halves = held_out_halves(log.samples, log.nominal, log.rest);
+    const auto halves = cli::held_out_halves(log.samples, log.nominal, log.rest);
     ASSERT_EQ(halves.size(), 2U);
     std::set<std::size_t> played;
     for (const HeldOut& half : halves)
@@ -79,7 +80,7 @@ TEST(HeldOut, halves_share_the_motion_and_are_calibrated_without_what_they_play)
     Recorded wrong = log;
     for (const auto& stretch : halves[0].stretches)
         for (std::size_t i = stretch.begin; i < stretch.end; ++i) wrong.samples[i].rate(4) *= 1.05;
-    const auto again = held_out_halves(wrong.samples, wrong.nominal, wrong.rest);
+    const auto again = cli::held_out_halves(wrong.samples, wrong.nominal, wrong.rest);
     ASSERT_EQ(again.size(), 2U);
     EXPECT_EQ(again[0].calibration.gain, halves[0].calibration.gain);
     EXPECT_GT(again[1].calibration.gain[4], halves[1].calibration.gain[4] + 0.02);
@@ -88,13 +89,13 @@ TEST(HeldOut, halves_share_the_motion_and_are_calibrated_without_what_they_play)
 TEST(HeldOut, has_no_halves_where_one_of_them_does_not_turn_enough_to_show_the_axes)
 {
     const Recorded log = recorded(0, 1);
-    EXPECT_TRUE(held_out_halves(log.samples, log.nominal, log.rest).empty());
+    EXPECT_TRUE(cli::held_out_halves(log.samples, log.nominal, log.rest).empty());
 }
 
 TEST(TightestSilent, tells_smaller_steps_than_terms_that_are_too_large_and_stays_silent)
 {
     const Recorded log = recorded(20, 2);
-    const auto halves = held_out_halves(log.samples, log.nominal, log.rest);
+    const auto halves = cli::held_out_halves(log.samples, log.nominal, log.rest);
     ASSERT_EQ(halves.size(), 2U);
     const std::vector<HeldOut> half{halves[0]};
     const auto start = fdi::usual_motion_noise(half[0].cluster, 8);
@@ -110,12 +111,35 @@ TEST(TightestSilent, tells_smaller_steps_than_terms_that_are_too_large_and_stays
 TEST(TightestSilent, silences_terms_that_are_too_small)
 {
     const Recorded log = recorded(20, 3);
-    const auto halves = held_out_halves(log.samples, log.nominal, log.rest);
+    const auto halves = cli::held_out_halves(log.samples, log.nominal, log.rest);
     ASSERT_EQ(halves.size(), 2U);
     const std::vector<HeldOut> half{halves[1]};
     const auto start = fdi::usual_motion_noise(half[0].cluster, 0.1);
     ASSERT_GT(standing(log.samples, half, start).largest_statistic, 1);
     EXPECT_LE(standing(log.samples, half, tightest_silent(log.samples, half, start)).largest_statistic, 0.86);
+}
+
+TEST(GatedTerms, are_what_most_frames_show_and_not_the_worst)
+{
+    Recorded log = recorded(120, 4);
+    const auto terms_of = [](const Recorded& shown) {
+        return cli::gated_terms(shown.samples, shown.nominal, calibration::calibrate(shown.samples, shown.nominal).value());
+    };
+    const auto terms = terms_of(log);
+    ASSERT_TRUE(terms);
+    EXPECT_GT(terms->along_s, jitter_s / 2);
+    EXPECT_LT(terms->along_s, 2 * jitter_s);
+    EXPECT_LT(terms->across_s, jitter_s / 2);
+    for (std::size_t i = 1400; i < log.samples.size(); i += 400) log.samples[i].rate(5) += 10 * degree;
+    const auto among_outliers = terms_of(log);
+    ASSERT_TRUE(among_outliers);
+    EXPECT_LT(among_outliers->along_s, 2 * jitter_s);
+}
+
+TEST(GatedTerms, are_not_told_by_a_recording_that_never_turned)
+{
+    const Recorded log = recorded(0, 5);
+    EXPECT_FALSE(cli::gated_terms(log.samples, log.nominal, calibration::calibrate(log.samples, log.nominal).value()));
 }
 
 }  // namespace

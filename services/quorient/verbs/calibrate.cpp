@@ -1,6 +1,7 @@
 #include "calibration_report.hpp"
 #include "cluster_input.hpp"
 #include "failure.hpp"
+#include "gated_terms.hpp"
 #include "json_output.hpp"
 #include "log_sample.hpp"
 #include "motion_level.hpp"
@@ -79,6 +80,7 @@ void run(const CalibrateOptions& options)
     auto calibration = calibration::calibrate(samples, nominal, options.rest);
     if (!calibration) fail(fmt::format("{}: {}", options.logs.front(), calibration.error()));
     calibration->cluster.motion_level = motion_level(samples, *calibration).value_or(0);
+    calibration->cluster.gated = gated_terms(samples, nominal, *calibration, options.rest);
     calibration->cluster.origin = files.front().filename().string();
 
     const auto& statistics = reader.statistics();

@@ -40,6 +40,13 @@ Json axis_json(const Calibration& calibration, std::size_t axis)
             {"saturated", calibration.saturated[axis]}};
 }
 
+Json gated_json(const Calibration& calibration)
+{
+    const auto& gated = calibration.cluster.gated;
+    if (!gated) return {};
+    return {{"along_s", gated->along_s}, {"across_s", gated->across_s}, {"axes", gated->axes}, {"rate", gated->rate}};
+}
+
 Json motion_json(const Calibration& calibration)
 {
     if (!calibration.motion) return {};
@@ -53,6 +60,7 @@ Json motion_json(const Calibration& calibration)
             {"largest_acceleration_rad_s2", motion.noise.largest_acceleration_rad_s2},
             {"samples", motion.noise.samples},
             {"level", calibration.cluster.motion_level > 0 ? Json(calibration.cluster.motion_level) : Json()},
+            {"gated", gated_json(calibration)},
             {"axes_residual_rad_s", calibration.axes_residual_rad_s},
             {"windows", windows}};
 }
@@ -113,6 +121,10 @@ std::string calibration_text(const Calibration& calibration, Samples samples, co
     if (calibration.cluster.motion_level > 0)
         text += fmt::format("motion noise: {:.2f} times the usual of an array (so much keeps the accumulating detector silent here)\n",
                             calibration.cluster.motion_level);
+    if (const auto& gated = calibration.cluster.gated)
+        text +=
+            fmt::format("gated sums: {:.3f} ms along, {:.3f} ms across, axes {:.1e}, rate {:.1e} (all but the worst frames show so much)\n",
+                        gated->along_s * 1e3, gated->across_s * 1e3, gated->axes, gated->rate);
     if (motion.noise.samples == 0) return text + "motion noise: no sample turned violently enough to show it\n";
     text += fmt::format("motion noise: {:.3f} ms x |dw/dt| along it, {:.3f} ms across ({} samples, up to {:.0f} deg/s^2)\n",
                         motion.noise.along_s * 1e3, motion.noise.across_s * 1e3, motion.noise.samples,

@@ -4,10 +4,19 @@
 #include "quorient/messages/limits.hpp"
 
 #include <array>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 
 namespace quorient::calibration {
+
+/// What a moving array shows beyond its noise at rest in all but its worst frames; one standard deviation each.
+struct GatedTerms {
+    double along_s = 0;   ///< times |d omega/dt|, along it
+    double across_s = 0;  ///< and across
+    double axes = 0;      ///< times the rotation
+    double rate = 0;      ///< times the angle turned through
+};
 
 /// A cluster as calibrated. Whoever plays raw measurements takes out the bias, then divides by the gain:
 /// increment = (raw - bias * interval) / gain.
@@ -17,8 +26,9 @@ struct CalibratedCluster {
     std::array<double, max_axes> bias_spread_rad_s{};
     double jitter_along_s = 0;  ///< as MotionNoise
     double jitter_across_s = 0;
-    double motion_level = 0;  ///< times the motion noise that is usual for arrays; 0 = not known
-    std::string origin;       ///< which log it comes from
+    double motion_level = 0;            ///< times the motion noise that is usual for arrays; 0 = not known
+    std::optional<GatedTerms> gated{};  ///< nothing where the recording does not tell
+    std::string origin;                 ///< which log it comes from
 };
 
 /// The YAML text of a cluster file; doubles read back bit-identical.

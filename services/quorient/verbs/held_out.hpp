@@ -8,7 +8,7 @@
 #include <functional>
 #include <vector>
 
-namespace quorient::lab {
+namespace quorient::cli {
 
 /// Half of a recording's motion, with the calibration that the other half gives (and the resting segments, shared out as the motion is):
 /// what calibration leaves wrong shows in it, as it will show in the next recording.
@@ -34,4 +34,4 @@ struct HeldOut {
 std::vector<HeldOut> held_out_halves(calibration::Samples samples, const ClusterDescription& nominal,
                                      const std::vector<calibration::Segment>& rest, const calibration::RestSettings& settings = {});
 
-}  // namespace quorient::lab
+}  // namespace quorient::cli

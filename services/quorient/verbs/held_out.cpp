@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-namespace quorient::lab {
+namespace quorient::cli {
 
 namespace {
 
@@ -104,4 +104,4 @@ std::vector<HeldOut> held_out_halves(Samples samples, const ClusterDescription& 
     return halves;
 }
 
-}  // namespace quorient::lab
+}  // namespace quorient::cli
