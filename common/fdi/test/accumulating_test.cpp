@@ -317,14 +317,14 @@ TEST(Accumulating, expects_as_much_of_the_motion_as_it_is_told)
     EXPECT_EQ(blamed_of_a_wild_array(8, 60), 0b000111000U);
 }
 
-constexpr GatedNoise mostly_calm{.jitter_along_s = 0.15e-3, .jitter_across_s = 0.05e-3};
+constexpr GatedNoise mostly_calm{.jitter_along_s = 0.12e-3, .jitter_across_s = 0.05e-3};
 
-/// Frames from the onset of a fault in violent motion, with outliers of 2 ms, until its instrument is isolated; `never` if it is not.
+/// Frames from the onset of a fault in violent motion, with outliers of 2.5 ms, until its instrument is isolated; `never` if it is not.
 std::uint64_t found_among_outliers(std::uint64_t seed, std::optional<GatedNoise> gated_noise, double bias_deg_s, std::uint64_t frames)
 {
     constexpr std::uint64_t onset = 600;
     Array array(seed);
-    array.outlier_s = 2e-3;
+    array.outlier_s = 2.5e-3;
     DetectorSettings settings{.method = "accumulating", .gated_noise = gated_noise};
     settings.instruments = true;
     auto monitor = FaultMonitor::make(settings, {}, array.cluster).value();
