@@ -25,9 +25,6 @@ constexpr double contradicting_level = 0.9;
 /// Rounds of estimating a step and its beginning by turns.
 constexpr int onset_rounds = 6;
 
-/// In the gated sums a frame counts less where an instrument contradicts the others by more than noise does this often.
-constexpr double gate_tail = 1e-3;
-
 /// Gated sums over fewer frames tell nothing that the others do not.
 constexpr std::size_t shortest_gated = 8;
 
@@ -81,7 +78,7 @@ tl::expected<std::unique_ptr<Accumulating>, std::string> Accumulating::make(cons
     auto array = InstrumentArray::make(cluster, sigma->cwiseAbs2());
     if (!array) return tl::unexpected("accumulating: " + array.error());
     std::optional<ArraySums> gated;
-    if (settings.gated_noise) gated.emplace(*array, calmer, chi_square_quantile(3, gate_tail));
+    if (settings.gated_noise) gated.emplace(*array, calmer, chi_square_quantile(3, ArraySums::gate_tail));
     return std::unique_ptr<Accumulating>(new Accumulating(settings, cluster, ArraySums(*array, motion), std::move(gated)));
 }
 

@@ -3,6 +3,7 @@
 #include "quorient/fdi/fault_monitor.hpp"
 #include "quorient/fdi/make_detector.hpp"
 #include "quorient/fdi/observer_detector.hpp"
+#include "quorient/system/calibrated_noise.hpp"
 #include "quorient/system/plant.hpp"
 
 #include <fmt/format.h>
@@ -29,9 +30,7 @@ void parse_verdict(Section& section, fdi::VerdictSettings& verdict)
 void take_calibration(const calibration::CalibratedCluster& cluster, fdi::DetectorSettings& detection)
 {
     if (cluster.motion_level > 0) detection.motion_noise = cluster.motion_level;
-    if (const auto& gated = cluster.gated)
-        detection.gated_noise = {
-            .jitter_along_s = gated->along_s, .jitter_across_s = gated->across_s, .axes_error = gated->axes, .rate_error = gated->rate};
+    detection.gated_noise = gated_noise_of(cluster);
 }
 
 void parse_detection(Section section, const System& system, DetectorProcess& detector)

@@ -1,6 +1,7 @@
 #include "recorded_array.hpp"
 
 #include "quorient/runtime/text.hpp"
+#include "quorient/system/calibrated_noise.hpp"
 #include "verbs/gated_terms.hpp"
 #include "verbs/log_sample.hpp"
 #include "verbs/motion_level.hpp"
@@ -117,9 +118,7 @@ tl::expected<RecordedArray, std::string> corrected(const Recording& recording, c
     for (const std::size_t instrument : instruments) array.name += fmt::format(" {}", runtime::text_of(theirs.instrument_name[instrument]));
     array.cluster = std::move(*cluster);
     if (calibration.motion_level > 0) array.motion_noise = calibration.motion_level;
-    if (const auto& gated = calibration.gated)
-        array.gated_noise = {
-            .jitter_along_s = gated->along_s, .jitter_across_s = gated->across_s, .axes_error = gated->axes, .rate_error = gated->rate};
+    array.gated_noise = system::gated_noise_of(calibration);
     array.frames.reserve(recording.samples.size());
     for (std::size_t i = 0; i < recording.samples.size(); ++i)
         array.frames.push_back(frame_of(recording.samples[i], recording.sequence[i], calibration, axes));

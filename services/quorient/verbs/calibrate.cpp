@@ -101,8 +101,8 @@ void add_calibrate(CLI::App& program)
     auto* verb = program.add_subcommand("calibrate", "What a recording tells of its gyros: bias, noise, axes, motion noise, limits.");
     verb->footer(
         "From resting segments: biases, noise, Allan deviation; from motion about all three axes, with more than three axes:\n"
-        "directions and gains. Without rest, biases and noise are those in which the axes disagree. --out writes the cluster file\n"
-        "that a publisher reads.\n\n"
+        "directions and gains. Without rest, biases and noise are those in which the axes disagree. From violent motion of three\n"
+        "instruments or more: the noise that their detector has to bear. --out writes the cluster file that a publisher reads.\n\n"
         "Example:\n"
         "  quorient calibrate exp_1/data.bin --out cluster.yaml --plot calibration.svg\n");
     const auto options = std::make_shared<CalibrateOptions>();

@@ -27,7 +27,6 @@ constexpr std::size_t least_values = 4 * order;         // else a window has no 
 constexpr std::size_t least_instruments = 3;            // two cannot tell who is wrong
 constexpr std::size_t least_for_triples = 5;            // then triples of them are tried, too: their mean is less certain
 constexpr std::array<std::size_t, 3> triples{1, 4, 7};  // first instrument of each
-constexpr double gate_tail = 1e-3;                      // the detector's
 constexpr double close_enough = 0.015;                  // of the excess
 constexpr double worth_a_step = 0.005;                  // of the merit
 constexpr std::array<double, 2> factors{0.6, 0.3};      // logarithms
@@ -139,7 +138,7 @@ private:
         std::array<Shown, windows.size()> shown;
         for (std::size_t h = 0; h < halves_.size(); ++h)
             for (const AxisMask excluded : exclusions(halves_[h])) {
-                fdi::ArraySums sums(arrays_[h], noise_of(logs, floor_), fdi::chi_square_quantile(3, gate_tail));
+                fdi::ArraySums sums(arrays_[h], noise_of(logs, floor_), fdi::chi_square_quantile(3, fdi::ArraySums::gate_tail));
                 sums.exclude(excluded);
                 add_half(halves_[h], sums, excluded == 0, shown);
             }

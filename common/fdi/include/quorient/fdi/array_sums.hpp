@@ -31,6 +31,7 @@ namespace quorient::fdi {
 class ArraySums {
 public:
     static constexpr std::size_t longest_window = 512;  ///< frames
+    static constexpr double gate_tail = 1e-3;           ///< a frame of noise alone is beyond the detector's gate this often
 
     enum class Added {
         unusable,  ///< an axis that is compared has no value: the windows go on behind this frame
