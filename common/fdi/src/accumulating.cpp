@@ -28,6 +28,9 @@ constexpr int onset_rounds = 6;
 /// Gated sums over fewer frames tell nothing that the others do not.
 constexpr std::size_t shortest_gated = 8;
 
+/// Between two ways to reckon the same.
+constexpr double rounding = 1e-6;
+
 constexpr double default_margin = 1.25;
 constexpr double default_false_alarms_per_hour = 0.1;
 
@@ -159,6 +162,9 @@ void Accumulating::weigh(std::size_t place, const ArraySums::Fit& fit, const Lim
 {
     const InstrumentArray::Instrument& instrument = sums_.array()[place];
     const auto [u, q] = fit.contradiction(place);
+    const double most_explained = std::max(0.0, u.dot(q.inverse() * u));
+    // No axis explains more than the whole instrument: where even that is less than what is known, nothing changes.
+    if (most_explained * (1 + rounding) < limits.axis * finding.second * finding.second) return;
     double most = 0;
     Hypothesis likeliest{.instrument = place};
     for (std::size_t i = 0; i < instrument.size; ++i) {
@@ -172,7 +178,7 @@ void Accumulating::weigh(std::size_t place, const ArraySums::Fit& fit, const Lim
         likeliest = axis;
     }
     if (!instruments_alone_) return;
-    const double whole = std::sqrt(std::max(0.0, u.dot(q.inverse() * u)) / limits.instrument);
+    const double whole = std::sqrt(most_explained / limits.instrument);
     if (whole > most) likeliest.axis.reset();
     finding.consider(std::max(most, whole), instrument.mask, likeliest);
 }
