@@ -1,10 +1,18 @@
 """Recordings of a running pipeline's topics, made by `quorient echo` in processes of their own."""
+import fcntl
+import gc
 import json
 import math
 import subprocess
 import threading
 import time
 from typing import NamedTuple
+
+# A full collection goes through every sample there is: after some minutes it takes longer than a reader's history lasts, and frames that
+# were given out would count as lost. Nothing here refers to itself.
+gc.disable()
+
+PIPE_BYTES = 1 << 20  # the most that everybody may ask for: some seconds of samples while this process is busy
 
 FULL, DEGRADED, SINGLE, COASTING, LOST = 1, 2, 3, 4, 5
 HELD = (COASTING, LOST)
@@ -60,6 +68,7 @@ class Recording:
         self.samples = []
         self._parse = parse
         self._process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        fcntl.fcntl(self._process.stdout, fcntl.F_SETPIPE_SZ, PIPE_BYTES)
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
 

@@ -273,7 +273,7 @@ def hops(runner):
 
 def transports(runner):
     results = []
-    for rate in (200, 1000):
+    for rate in runner.options.rates:
         results += runner.in_turns([{"transport": name, "rate_hz": rate} for name in TRANSPORTS], runner.options.rounds)
     return results
 
@@ -340,6 +340,8 @@ def parse():
     parser.add_argument("--quick", action="store_true", help="one round of 1 s, 5 s in place of the minute")
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--seconds", type=float, default=2.5, help="of frames in each run")
+    parser.add_argument("--rates", default=[200, 1000], type=lambda text: [int(rate) for rate in text.split(",")],
+                        help="frames per second of the pipelines by transport, Hz: 200,1000")
     parser.add_argument("--settle", type=float, default=1.2, help="seconds that a pipeline takes to start, before its CPU time counts")
     parser.add_argument("--minute", type=float, default=60, help="seconds of the long run at 1 kHz")
     parser.add_argument("--pings", type=int, default=1000, help="of each path in each round")

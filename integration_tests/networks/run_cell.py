@@ -38,12 +38,12 @@ def lanes_on_hosts():
 
 def two_networks():
     """Lane a on network A, lane c on network B, all else on both. Who is on both runs on Fast DDS, which sends on all its networks.
-    The harm waits for the end of its first five seconds, when it announces itself ten times a second to every port of every peer."""
+    The harm waits for the end of its first second, when it announces itself fifty times to every place of every peer."""
     networks = {"core": ("A", "B"), "a": ("A",), "b": ("A", "B"), "c": ("B",)}
     lanes = {"a": ("cyclonedds", "eth0"), "b": ("fastdds", "any"), "c": ("fastdds", "eth0")}
     places = {f"{role}-{lane}": Place(lane, *joins) for lane, joins in lanes.items() for role in ("attitude", "fdi")}
     core = {name: Place("core", "fastdds", "any") for name in ("voter-1", "voter-2", "sensor")}
-    return Layout(networks, core | places, Place("core", "fastdds", "any"), begin_s=6.5)
+    return Layout(networks, core | places, Place("core", "fastdds", "any"), begin_s=2.5)
 
 
 class Cell(NamedTuple):

@@ -1,20 +1,14 @@
 #include "quorient/bus/fastdds_bus.hpp"
 
-#include "guarded_transport.hpp"
-#include "quorient/bus/interfaces.hpp"
-#include "quorient/bus/roudi.hpp"
+#include "participant.hpp"
 #include "ros2.hpp"
 #include "types.hpp"
 
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
 #include <fmt/format.h>
 #include <cstring>
 #include <fastdds/dds/core/condition/WaitSet.hpp>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fastdds/dds/log/Log.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
@@ -26,15 +20,12 @@ namespace quorient::bus {
 
 namespace dds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastdds::rtps;
-using eprosima::fastrtps::Duration_t;
 using eprosima::fastrtps::types::ReturnCode_t;
 
 namespace {
 
-Duration_t seconds(double s)
-{
-    return {static_cast<std::int32_t>(s), static_cast<std::uint32_t>((s - static_cast<std::int32_t>(s)) * 1e9)};
-}
+using fastdds::seconds;
+using fastdds::shares_memory;
 
 std::string_view policy_name(dds::QosPolicyId_t id)
 {
@@ -56,14 +47,6 @@ std::string_view policy_name(dds::QosPolicyId_t id)
         default:
             return "another policy";
     }
-}
-
-/// Of one participant: its segment of 512 KiB, its ports, and theirs whom it writes to; generously.
-constexpr std::uintmax_t shared_memory_needed = 4 << 20;
-
-bool shares_memory(const Settings& settings)
-{
-    return settings.transport == Transport::shared_memory && settings.shared_memory != SharedMemory::off;
 }
 
 /// What both ends of a topic share. Resource limits of 0 are "no limit": the default of ten instances is fewer than a system has services.
@@ -304,95 +287,15 @@ private:
     Transports transports_;
 };
 
-/// The default port mapping [RTPS 9.6.1.1]: discovery of participant p at 7400 + 250 domain + 10 + 2 p, data one above. Where to look for
-/// peers, and at the same time every address that samples may go to: Fast DDS 2.9.1 (built with statistics) aborts when it matches an
-/// endpoint behind an address that it has not opened yet, which a list known from the start prevents [eProsima/Fast-DDS issue 3285].
-void add_peer(const std::string& address, const Settings& settings, eprosima::fastrtps::rtps::LocatorList_t& peers)
-{
-    for (std::uint32_t port = 10; port < 10 + 2 * settings.participants_per_host; ++port) {
-        eprosima::fastrtps::rtps::Locator_t locator;
-        eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, address);
-        locator.port = 7400 + 250 * settings.domain + port;
-        peers.push_back(locator);
-    }
-}
-
-/// Multicast discovery goes on beside the list.
-void add_multicast(std::uint32_t domain, eprosima::fastrtps::rtps::LocatorList_t& peers)
-{
-    eprosima::fastrtps::rtps::Locator_t locator;
-    eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, "239.255.0.1");
-    locator.port = 7400 + 250 * domain;
-    peers.push_back(locator);
-}
-
-/// On several networks: the own addresses in an order that does not change. Cyclone DDS 0.10 sends to the first one alone. Without ports
-/// Fast DDS fills in those of the participant.
-void announce_in_order(dds::WireProtocolConfigQos& wire)
-{
-    for (const auto& address : own_addresses()) {
-        eprosima::fastrtps::rtps::Locator_t locator;
-        eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, address);
-        wire.builtin.metatrafficUnicastLocatorList.push_back(locator);
-        wire.default_unicast_locator_list.push_back(locator);
-    }
-}
-
-/// Linux's own default. It must be stated: behind another transport Fast DDS 2.9.1 takes what is not stated for 0, holds the buffer for
-/// full after every sample, and asks each reader to acknowledge it.
-constexpr std::uint32_t send_buffer = 212'992;
-
-void add_transports(const Settings& settings, fastdds::Listening listening, dds::TransportConfigQos& transports)
-{
-    transports.use_builtin_transports = false;
-    const auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
-    udp->sendBufferSize = send_buffer;
-    if (!settings.interface.empty()) udp->interfaceWhiteList = addresses_of(settings.interface);
-    transports.user_transports.push_back(fastdds::guarded(udp, std::move(listening)));
-    if (shares_memory(settings)) transports.user_transports.push_back(std::make_shared<rtps::SharedMemTransportDescriptor>());
-}
-
-/// Without room Fast DDS would be ended by SIGBUS at its first sample.
-tl::expected<Settings, std::string> with_room_in_shared_memory(Settings settings)
-{
-    if (!shares_memory(settings) || free_shared_memory() >= shared_memory_needed) return settings;
-    if (settings.shared_memory == SharedMemory::required)
-        return tl::make_unexpected(
-            fmt::format("Fast DDS needs {} MiB in /dev/shm, {:.1f} MiB are free: quorient clean removes what killed "
-                        "processes left; or use transport udp, or shared_memory: preferred",
-                        shared_memory_needed >> 20, static_cast<double>(free_shared_memory()) / (1 << 20)));
-    settings.shared_memory = SharedMemory::off;
-    return settings;
-}
-
 }  // namespace
 
 tl::expected<std::unique_ptr<Bus>, std::string> open_fastdds(const Settings& asked)
 {
-    const auto checked = with_room_in_shared_memory(asked);
+    const auto checked = fastdds::with_room_in_shared_memory(asked);
     if (!checked) return tl::make_unexpected(checked.error());
     const auto& settings = *checked;
-    dds::Log::SetVerbosity(dds::Log::Error);
-    dds::DomainParticipantQos qos;
-    qos.name(settings.participant);
-    const auto listening = std::make_shared<std::atomic<bool>>(false);
-    add_transports(settings, listening, qos.transport());
-    auto& builtin = qos.wire_protocol().builtin;
-    // Peers that start together find each other without waiting for the 3 s announcement; the first goes nowhere (guarded_transport.hpp).
-    builtin.discovery_config.initial_announcements.count = 50;
-    builtin.discovery_config.initial_announcements.period = seconds(0.02);
-    builtin.discovery_config.leaseDuration_announcementperiod = seconds(1);
-    builtin.discovery_config.leaseDuration = seconds(10);
-    if (settings.interface.empty() && !settings.peers.empty() && !shares_memory(settings)) announce_in_order(qos.wire_protocol());
-    for (const auto& peer : settings.peers) add_peer(peer, settings, builtin.initialPeersList);
-    if (settings.peers.empty()) {
-        for (const auto& own : addresses_of(settings.interface)) add_peer(own, settings, builtin.initialPeersList);
-        add_multicast(settings.domain, builtin.initialPeersList);
-    }
-
-    auto* participant = dds::DomainParticipantFactory::get_instance()->create_participant(settings.domain, qos);
+    auto* participant = fastdds::join(settings);
     if (!participant) return tl::make_unexpected(fmt::format("Fast DDS: cannot join domain {}", settings.domain));
-    listening->store(true);
     auto bus = std::make_unique<FastBus>(settings, participant);
     if (shares_memory(settings) && settings.shared_memory == SharedMemory::required && bus->transport() == Transport::udp)
         return tl::make_unexpected(std::string{

@@ -1,0 +1,128 @@
+#include "participant.hpp"
+
+#include "guarded_transport.hpp"
+#include "quorient/bus/interfaces.hpp"
+#include "quorient/bus/roudi.hpp"
+
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+#include <fmt/format.h>
+#include <unistd.h>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/log/Log.hpp>
+
+namespace quorient::bus::fastdds {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastdds::rtps;
+
+namespace {
+
+/// Of one participant: its segment of 512 KiB, its ports, and theirs whom it writes to; generously.
+constexpr std::uintmax_t shared_memory_needed = 4 << 20;
+
+/// Where the participants of an address listen for discovery [RTPS 9.6.1.1]: participant p at 7400 + 250 domain + 10 + 2 p.
+void add_peer(const std::string& address, const Settings& settings, eprosima::fastrtps::rtps::LocatorList_t& peers)
+{
+    for (std::uint32_t participant = 0; participant < settings.participants_per_host; ++participant) {
+        eprosima::fastrtps::rtps::Locator_t locator;
+        eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, address);
+        locator.port = 7400 + 250 * settings.domain + 10 + 2 * participant;
+        peers.push_back(locator);
+    }
+}
+
+/// Multicast discovery goes on beside the list.
+void add_multicast(std::uint32_t domain, eprosima::fastrtps::rtps::LocatorList_t& peers)
+{
+    eprosima::fastrtps::rtps::Locator_t locator;
+    eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, "239.255.0.1");
+    locator.port = 7400 + 250 * domain;
+    peers.push_back(locator);
+}
+
+/// On several networks: the own addresses in an order that does not change. Cyclone DDS 0.10 sends to the first one alone. Without ports
+/// Fast DDS fills in those of the participant.
+void announce_in_order(dds::WireProtocolConfigQos& wire)
+{
+    for (const auto& address : own_addresses()) {
+        eprosima::fastrtps::rtps::Locator_t locator;
+        eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, address);
+        wire.builtin.metatrafficUnicastLocatorList.push_back(locator);
+        wire.default_unicast_locator_list.push_back(locator);
+    }
+}
+
+/// Every second, and a little more for some processes than for others: each goes to all places of all peers, and those of a system that has
+/// been started at once, all in the same moment, take its processors for tens of milliseconds.
+double announcement_period_s()
+{
+    constexpr int paces = 64;
+    return 1 + 0.25 * (getpid() % paces) / paces;
+}
+
+/// Linux's own default. It must be stated: behind another transport Fast DDS 2.9.1 takes what is not stated for 0, holds the buffer for
+/// full after every sample, and asks each reader to acknowledge it.
+constexpr std::uint32_t send_buffer = 212'992;
+
+void add_transports(const Settings& settings, Listening listening, dds::TransportConfigQos& transports)
+{
+    transports.use_builtin_transports = false;
+    const auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
+    udp->sendBufferSize = send_buffer;
+    if (!settings.interface.empty()) udp->interfaceWhiteList = addresses_of(settings.interface);
+    transports.user_transports.push_back(guarded(udp, std::move(listening)));
+    if (shares_memory(settings)) transports.user_transports.push_back(std::make_shared<rtps::SharedMemTransportDescriptor>());
+}
+
+}  // namespace
+
+eprosima::fastrtps::Duration_t seconds(double s)
+{
+    return {static_cast<std::int32_t>(s), static_cast<std::uint32_t>((s - static_cast<std::int32_t>(s)) * 1e9)};
+}
+
+bool shares_memory(const Settings& settings)
+{
+    return settings.transport == Transport::shared_memory && settings.shared_memory != SharedMemory::off;
+}
+
+tl::expected<Settings, std::string> with_room_in_shared_memory(Settings settings)
+{
+    if (!shares_memory(settings) || free_shared_memory() >= shared_memory_needed) return settings;
+    if (settings.shared_memory == SharedMemory::required)
+        return tl::make_unexpected(
+            fmt::format("Fast DDS needs {} MiB in /dev/shm, {:.1f} MiB are free: quorient clean removes what killed "
+                        "processes left; or use transport udp, or shared_memory: preferred",
+                        shared_memory_needed >> 20, static_cast<double>(free_shared_memory()) / (1 << 20)));
+    settings.shared_memory = SharedMemory::off;
+    return settings;
+}
+
+dds::DomainParticipant* join(const Settings& settings)
+{
+    dds::Log::SetVerbosity(dds::Log::Error);
+    dds::DomainParticipantQos qos;
+    qos.name(settings.participant);
+    const auto listening = std::make_shared<std::atomic<bool>>(false);
+    add_transports(settings, listening, qos.transport());
+    auto& builtin = qos.wire_protocol().builtin;
+    // Peers that start together find each other without waiting for the 3 s announcement; the first goes nowhere (guarded_transport.hpp).
+    builtin.discovery_config.initial_announcements.count = 50;
+    builtin.discovery_config.initial_announcements.period = seconds(0.02);
+    builtin.discovery_config.leaseDuration_announcementperiod = seconds(announcement_period_s());
+    builtin.discovery_config.leaseDuration = seconds(10);
+    if (settings.interface.empty() && !settings.peers.empty() && !shares_memory(settings)) announce_in_order(qos.wire_protocol());
+    for (const auto& peer : settings.peers) add_peer(peer, settings, builtin.initialPeersList);
+    if (settings.peers.empty()) {
+        for (const auto& own : addresses_of(settings.interface)) add_peer(own, settings, builtin.initialPeersList);
+        add_multicast(settings.domain, builtin.initialPeersList);
+    }
+
+    auto* participant = dds::DomainParticipantFactory::get_instance()->create_participant(settings.domain, qos);
+    listening->store(true);
+    return participant;
+}
+
+}  // namespace quorient::bus::fastdds
