@@ -23,6 +23,9 @@ def hop(report, name, quantile):
     return found[quantile] if found else None
 
 
+NO_FLOOR = 0.01  # share of its frames; a floor that loses more is overrun, and what it is a floor of as well
+
+
 def lost(report):
     """Frames that were sent and that no voter gave out, at the end of the run too."""
     return max(0, report["expected"] - report["never_sent"] - report["frames"])
@@ -190,6 +193,9 @@ def pipeline_goals(results):
             waits = ratio(result, "floor_that_waits")
             row = [f"{name}: <= 1.25", *verdict(ratio(result, "floor"), 1.25)]
             row[1] += f" (to the floor that waits: {number(waits, 2)})"
+            share = over_rounds(result, "floor", lambda r: lost(r) / max(r["expected"], 1))
+            if share is not None and share > NO_FLOOR:
+                row[2] = f"no floor: it loses {100 * share:.0f} % of its frames"
             yield row
     for rate in (200, 1000):
         pair = [find(results, transport=f"{how}, Cyclone DDS", rate_hz=rate) for how in ("iceoryx", "UDP")]
