@@ -334,13 +334,20 @@ def machine(options):
 SECTIONS = {"hops": hops, "transports": transports, "sustained": sustained, "growth": growth, "spinning": spinning}
 
 
+def rates(text):
+    found = [int(rate) for rate in text.split(",")]
+    if min(found) <= 0:
+        raise ValueError(text)
+    return found
+
+
 def parse():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default=",".join(SECTIONS), help="of " + ",".join(SECTIONS))
     parser.add_argument("--quick", action="store_true", help="one round of 1 s, 5 s in place of the minute")
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--seconds", type=float, default=2.5, help="of frames in each run")
-    parser.add_argument("--rates", default=[200, 1000], type=lambda text: [int(rate) for rate in text.split(",")],
+    parser.add_argument("--rates", default=[200, 1000], type=rates,
                         help="frames per second of the pipelines by transport, Hz: 200,1000")
     parser.add_argument("--settle", type=float, default=1.2, help="seconds that a pipeline takes to start, before its CPU time counts")
     parser.add_argument("--minute", type=float, default=60, help="seconds of the long run at 1 kHz")

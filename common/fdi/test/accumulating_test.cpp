@@ -270,6 +270,27 @@ TEST(Accumulating, is_ambiguous_between_two_instruments)
     EXPECT_EQ(assessment.candidate_count, 2);
 }
 
+TEST(Accumulating, names_nobody_where_two_instruments_are_wrong_alike)
+{
+    Array array(9, "triads-4");
+    DetectorSettings settings;
+    settings.instruments = true;
+    auto detector = Accumulating::make(settings, array.cluster).value();
+    Assessment assessment;
+    for (std::uint64_t sequence = 0; sequence < 300; ++sequence) {
+        SensorFrame frame = array.frame(sequence, Array::rest);
+        for (const std::size_t wrong : {0, 1})
+            if (sequence > 200) frame.increment[3 * wrong] += 20 * degree * interval_s;
+        detector->assess({.identity = identity_of(frame),
+                          .interval_s = interval_s,
+                          .increment = std::span(frame.increment).first(12),
+                          .valid = array.cluster.all()},
+                         assessment);
+        ASSERT_NE(assessment.outcome, Outcome::isolated) << "frame " << sequence;
+    }
+    EXPECT_EQ(assessment.outcome, Outcome::ambiguous);
+}
+
 TEST(Accumulating, says_how_much_is_left_to_detect)
 {
     auto detector = Accumulating::make({}, Array(1).cluster).value();

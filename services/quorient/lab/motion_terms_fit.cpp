@@ -3,6 +3,7 @@
 #include "quorient/fdi/accumulating.hpp"
 #include "quorient/fdi/array_sums.hpp"
 #include "quorient/fdi/noise.hpp"
+#include "verbs/term_search.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -16,20 +17,12 @@ namespace {
 using calibration::Samples;
 
 constexpr double largest_wanted = 0.85;
-constexpr double close_enough = 0.01;               // of the statistic, relative
-constexpr double worth_a_step = 0.005;              // of the merit, relative
-constexpr std::array<double, 2> factors{0.6, 0.3};  // logarithms
-constexpr int sweeps = 5;
-constexpr int level_rounds = 12;
-
-/// By how much (logarithms) the smallest step grows where all terms are raised until the statistic has fallen by one. Measured: 0.6 to 0.9.
-constexpr double exchange = 0.8;
-
 constexpr std::array<std::size_t, 10> windows{1, 2, 4, 8, 16, 32, 64, 128, 256, 512};
 static_assert(windows.back() == fdi::ArraySums::longest_window);
 
 /// Logarithms of the terms that are sought.
-using Logs = std::array<double, 5>;
+using Place = cli::TermPlace<5>;
+using Logs = decltype(Place::logs);
 
 fdi::MotionNoise noise_of(const Logs& logs, const fdi::MotionNoise& start)
 {
@@ -46,12 +39,6 @@ Logs logs_of(const fdi::MotionNoise& noise)
 {
     return {std::log(noise.jitter_along_s), std::log(noise.jitter_across_s), std::log(noise.roughness_s), std::log(noise.axes_error),
             std::log(noise.rate_error)};
-}
-
-Logs raised(Logs logs, double by)
-{
-    for (double& value : logs) value += by;
-    return logs;
 }
 
 double largest_statistic(Samples samples, const HeldOut& part, const fdi::MotionNoise& noise)
@@ -111,74 +98,6 @@ void add_steps(Samples samples, const HeldOut& part, const fdi::MotionNoise& noi
     }
 }
 
-/// Looks for the tightest silent noise.
-class Search {
-public:
-    Search(Samples samples, const std::vector<HeldOut>& parts, const fdi::MotionNoise& start)
-        : samples_(samples), parts_(parts), start_(start), at_(seen(logs_of(start)))
-    {
-    }
-
-    fdi::MotionNoise result()
-    {
-        level();
-        for (const double factor : factors)
-            for (int sweep = 0; sweep < sweeps && improved(factor); ++sweep) level();
-        return noise_of(at_.logs, start_);
-    }
-
-private:
-    struct Place {
-        Logs logs{};
-        double step = 0;    ///< logarithm
-        double excess = 0;  ///< logarithm of the statistic over the wanted one
-        double merit() const { return step + exchange * excess; }
-    };
-
-    Place seen(const Logs& logs) const
-    {
-        const Standing now = standing(samples_, parts_, noise_of(logs, start_));
-        return {logs, std::log(now.smallest_step_rad_s), std::log(now.largest_statistic / largest_wanted)};
-    }
-
-    /// All terms by one factor, until the statistic is the wanted one.
-    void level()
-    {
-        double lowest = -1e9;
-        double highest = 1e9;
-        double by = 0;
-        const Logs from = at_.logs;
-        for (int round = 0; round < level_rounds && std::abs(at_.excess) > close_enough; ++round) {
-            (at_.excess > 0 ? lowest : highest) = by;
-            by += at_.excess;  // the statistic falls no faster than the terms rise
-            if (by <= lowest || by >= highest) by = (lowest + highest) / 2;
-            at_ = seen(raised(from, by));
-        }
-    }
-
-    /// Each term up or down by this factor. @returns whether any of that was worth its while.
-    bool improved(double factor)
-    {
-        bool any = false;
-        for (std::size_t term = 0; term < at_.logs.size(); ++term)
-            for (const double by : {-factor, factor}) {
-                Logs logs = at_.logs;
-                logs[term] += by;
-                const Place there = seen(logs);
-                if (there.merit() > at_.merit() - worth_a_step) continue;
-                at_ = there;
-                any = true;
-                break;
-            }
-        return any;
-    }
-
-    Samples samples_;
-    const std::vector<HeldOut>& parts_;
-    fdi::MotionNoise start_;
-    Place at_;
-};
-
 }  // namespace
 
 Standing standing(Samples samples, const std::vector<HeldOut>& parts, const fdi::MotionNoise& noise)
@@ -201,7 +120,11 @@ Standing standing(Samples samples, const std::vector<HeldOut>& parts, const fdi:
 
 fdi::MotionNoise tightest_silent(Samples samples, const std::vector<HeldOut>& parts, const fdi::MotionNoise& start)
 {
-    return Search(samples, parts, start).result();
+    const auto seen = [&](const Logs& logs) {
+        const Standing now = standing(samples, parts, noise_of(logs, start));
+        return Place{logs, std::log(now.smallest_step_rad_s), std::log(now.largest_statistic / largest_wanted)};
+    };
+    return noise_of(cli::TermSearch<5, decltype(seen)>(seen(logs_of(start)), seen, {}).result(), start);
 }
 
 }  // namespace quorient::lab

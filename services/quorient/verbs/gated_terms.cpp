@@ -3,6 +3,7 @@
 #include "held_out.hpp"
 #include "quorient/fdi/array_sums.hpp"
 #include "quorient/fdi/noise.hpp"
+#include "term_search.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -27,17 +28,11 @@ constexpr std::size_t least_values = 4 * order;         // else a window has no 
 constexpr std::size_t least_instruments = 3;            // two cannot tell who is wrong
 constexpr std::size_t least_for_triples = 5;            // then triples of them are tried, too: their mean is less certain
 constexpr std::array<std::size_t, 3> triples{1, 4, 7};  // first instrument of each
-constexpr double close_enough = 0.015;                  // of the excess
-constexpr double worth_a_step = 0.005;                  // of the merit
-constexpr std::array<double, 2> factors{0.6, 0.3};      // logarithms
-constexpr int sweeps = 4;
-constexpr int level_rounds = 8;
-
-/// By how much (logarithms) the smallest step grows where all terms are raised until the statistic has fallen by one.
-constexpr double exchange = 0.8;
+constexpr TermSearchSettings search{.close_enough = 0.015, .level_rounds = 8, .sweeps = 4};
 
 /// Logarithms: along, across, axes, rate.
-using Logs = std::array<double, 4>;
+using Place = TermPlace<4>;
+using Logs = decltype(Place::logs);
 
 fdi::MotionNoise noise_of(const Logs& logs, double bias_floor_rad_s)
 {
@@ -69,25 +64,16 @@ public:
     std::optional<GatedTerms> result()
     {
         const auto usual = fdi::usual_motion_noise(halves_.front().cluster);
-        at_ =
+        const Place start =
             seen({std::log(usual.jitter_along_s), std::log(usual.jitter_across_s), std::log(usual.axes_error), std::log(usual.rate_error)});
-        if (!std::isfinite(at_.excess)) return std::nullopt;
-        level();
-        for (const double factor : factors)
-            for (int sweep = 0; sweep < sweeps && improved(factor); ++sweep) level();
-        const auto& logs = at_.logs;
+        if (!std::isfinite(start.excess)) return std::nullopt;
+        const auto look = [this](const Logs& logs) { return seen(logs); };
+        const Logs logs = TermSearch<4, decltype(look)>(start, look, search).result();
         return GatedTerms{
             .along_s = std::exp(logs[0]), .across_s = std::exp(logs[1]), .axes = std::exp(logs[2]), .rate = std::exp(logs[3])};
     }
 
 private:
-    struct Place {
-        Logs logs{};
-        double step = 0;    ///< logarithm of the smallest step
-        double excess = 0;  ///< logarithm of the order statistic over what it should be, of the worst window
-        double merit() const { return step + exchange * excess; }
-    };
-
     /// All instruments, then some triples.
     std::vector<AxisMask> exclusions(const HeldOut& half) const
     {
@@ -157,45 +143,10 @@ private:
         return place;
     }
 
-    /// All terms by one factor, until the excess is none.
-    void level()
-    {
-        double lowest = -1e9;
-        double highest = 1e9;
-        double by = 0;
-        const Logs from = at_.logs;
-        for (int round = 0; round < level_rounds && std::abs(at_.excess) > close_enough; ++round) {
-            (at_.excess > 0 ? lowest : highest) = by;
-            by += at_.excess;  // the statistic falls no faster than the terms rise
-            if (by <= lowest || by >= highest) by = (lowest + highest) / 2;
-            Logs logs = from;
-            for (double& value : logs) value += by;
-            at_ = seen(logs);
-        }
-    }
-
-    /// Each term up or down by this factor. @returns whether any of that was worth its while.
-    bool improved(double factor)
-    {
-        bool any = false;
-        for (std::size_t term = 0; term < at_.logs.size(); ++term)
-            for (const double by : {-factor, factor}) {
-                Logs logs = at_.logs;
-                logs[term] += by;
-                const Place there = seen(logs);
-                if (there.merit() > at_.merit() - worth_a_step) continue;
-                at_ = there;
-                any = true;
-                break;
-            }
-        return any;
-    }
-
     Samples samples_;
     const std::vector<HeldOut>& halves_;
     std::vector<fdi::InstrumentArray> arrays_;  ///< of each half
     double floor_;
-    Place at_;
 };
 
 }  // namespace

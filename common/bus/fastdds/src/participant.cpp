@@ -54,8 +54,8 @@ void announce_in_order(dds::WireProtocolConfigQos& wire)
     }
 }
 
-/// Every second, and a little more for some processes than for others: each goes to all places of all peers, and those of a system that has
-/// been started at once, all in the same moment, take its processors for tens of milliseconds.
+/// Every second, and a little more for some processes than for others: each goes to all places of all peers, and those of a system that was
+/// started at once would go out at once, too.
 double announcement_period_s()
 {
     constexpr int paces = 64;
