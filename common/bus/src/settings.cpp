@@ -81,6 +81,11 @@ double heartbeat_s(const Settings& settings)
     return std::max(settings.heartbeat_s, std::clamp(loopback_ratio * settings.heartbeat_s, shortest_loopback_s, longest_loopback_s));
 }
 
+double repair_pause_s(const Settings& settings)
+{
+    return is_loopback(settings.interface) ? heartbeat_s(settings) / 2 : 0;
+}
+
 std::vector<std::string> problems(const Settings& settings)
 {
     std::vector<std::string> found;

@@ -41,6 +41,15 @@ TEST(BusSettings, ask_for_acknowledgements_more_rarely_on_loopback_than_on_a_net
     EXPECT_DOUBLE_EQ(heartbeat_s(settings), 0.5);
 }
 
+TEST(BusSettings, repair_at_once_on_a_network_and_within_one_and_a_half_heartbeats_on_loopback)
+{
+    Settings settings;
+    settings.interface = "";
+    EXPECT_EQ(repair_pause_s(settings), 0);
+    settings.interface = "lo";
+    EXPECT_DOUBLE_EQ(repair_pause_s(settings), heartbeat_s(settings) / 2);
+}
+
 TEST(BusSettings, on_loopback_have_no_problem)
 {
     EXPECT_THAT(problems(Settings{}), IsEmpty());

@@ -236,6 +236,7 @@ private:
         // The default heartbeat of 3 s leaves a Cyclone reader that matched late without its history.
         qos.reliable_writer_qos().times.heartbeatPeriod = seconds(heartbeat_s(settings_));
         qos.reliable_writer_qos().times.nackResponseDelay = seconds(0);
+        qos.reliable_writer_qos().times.nackSupressionDuration = seconds(repair_pause_s(settings_));
         qos.reliable_writer_qos().times.initialHeartbeatDelay = seconds(0);
         if (topic.qos.exclusive) {
             qos.ownership_strength().value = static_cast<std::uint32_t>(options.strength);
