@@ -14,6 +14,14 @@ namespace {
 using namespace quorient;
 
 constexpr std::size_t frame_count = 256;
+constexpr double interval_s = 0.01;
+
+geometry::SensorCluster cluster_of(const std::string& layout)
+{
+    auto cluster = geometry::layout(layout).value();
+    cluster.interval_s = interval_s;
+    return cluster;
+}
 
 /// Slow motion with unit noise; a fault of 200 sigma on axis 1 where `faulty`.
 std::vector<std::vector<double>> frames_of(const geometry::SensorCluster& cluster, bool faulty)
@@ -34,7 +42,7 @@ std::vector<std::vector<double>> frames_of(const geometry::SensorCluster& cluste
 
 void product(benchmark::State& state, const std::string& layout)
 {
-    const auto cluster = geometry::layout(layout).value();
+    const auto cluster = cluster_of(layout);
     const Eigen::MatrixXd basis = geometry::ParitySpace(cluster.axes).basis();
     const auto frames = frames_of(cluster, false);
     Eigen::VectorXd parity(basis.rows());
@@ -48,14 +56,14 @@ void product(benchmark::State& state, const std::string& layout)
 
 void assessment(benchmark::State& state, const fdi::DetectorSettings& settings, const std::string& layout, bool faulty)
 {
-    const auto cluster = geometry::layout(layout).value();
+    const auto cluster = cluster_of(layout);
     const auto detector = fdi::make_detector(settings, cluster).value();
     const auto frames = frames_of(cluster, faulty);
     fdi::Assessment assessment;
     std::uint64_t sequence = 0;
     for (auto _ : state) {
         detector->assess(
-            {.identity = {1, sequence}, .interval_s = 0.01, .increment = frames[sequence % frame_count], .valid = cluster.all()},
+            {.identity = {1, sequence}, .interval_s = interval_s, .increment = frames[sequence % frame_count], .valid = cluster.all()},
             assessment);
         ++sequence;
         benchmark::DoNotOptimize(assessment);
@@ -64,7 +72,7 @@ void assessment(benchmark::State& state, const fdi::DetectorSettings& settings, 
 
 void add_methods(const std::string& axes, const std::string& layout)
 {
-    const auto cluster = geometry::layout(layout).value();
+    const auto cluster = cluster_of(layout);
     benchmark::RegisterBenchmark(("product/" + axes).c_str(), product, layout);
     for (const auto& entry : fdi::methods()) {
         fdi::DetectorSettings settings;

@@ -126,6 +126,14 @@ void Accumulating::reset()
     alert_ = false;
 }
 
+/// No hypothesis reaches a higher certainty over this window: none explains more than its whole instrument, and an axis is the cheapest.
+double Accumulating::most_possible(std::size_t window, const Limits& limits) const
+{
+    double largest = sums_.largest_chi_square(window);
+    if (gated_ && window >= shortest_gated) largest = std::max(largest, gated_->largest_chi_square(window));
+    return std::sqrt(largest * (1 + rounding) / limits.axis);
+}
+
 Accumulating::Finding Accumulating::examine(const ArraySums& sums, std::size_t window, const Limits& limits) const
 {
     const ArraySums::Fit fit = sums.fit(window);
@@ -161,10 +169,10 @@ void Accumulating::Finding::consider(double with_certainty, AxisMask axes, const
 void Accumulating::weigh(std::size_t place, const ArraySums::Fit& fit, const Limits& limits, Finding& finding) const
 {
     const InstrumentArray::Instrument& instrument = sums_.array()[place];
-    const auto [u, q] = fit.contradiction(place);
-    const double most_explained = std::max(0.0, u.dot(q.inverse() * u));
+    const double most_explained = fit.chi_square(place);
     // No axis explains more than the whole instrument: where even that is less than what is known, nothing changes.
     if (most_explained * (1 + rounding) < limits.axis * finding.second * finding.second) return;
+    const auto [u, q] = fit.contradiction(place);
     double most = 0;
     Hypothesis likeliest{.instrument = place};
     for (std::size_t i = 0; i < instrument.size; ++i) {
@@ -185,10 +193,16 @@ void Accumulating::weigh(std::size_t place, const ArraySums::Fit& fit, const Lim
 
 Accumulating::Finding Accumulating::most_certain()
 {
-    Finding most;
+    std::array<double, window_count> possible{};
+    for (std::size_t i = 0; i < windows.size() && windows[i] < sums_.size(); ++i)
+        if (alert_ || sums_.counted() % stride_of(windows[i]) == 0) possible[i] = most_possible(windows[i], limits_[i]);
+    const auto likeliest = static_cast<std::size_t>(std::max_element(possible.begin(), possible.end()) - possible.begin());
+    Finding most = examine(windows[likeliest], limits_[likeliest]);
     std::array<Finding, window_count> findings;
-    for (std::size_t i = 0; i < windows.size() && windows[i] < sums_.size(); ++i) {
-        if (!alert_ && sums_.counted() % stride_of(windows[i]) != 0) continue;
+    findings[likeliest] = most;
+    for (std::size_t i = 0; i < windows.size(); ++i) {
+        // Neither the most certain window nor one that contradicts it.
+        if (i == likeliest || possible[i] <= std::min(most.certainty, contradicting_level)) continue;
         findings[i] = examine(windows[i], limits_[i]);
         if (findings[i].certainty > most.certainty) most = findings[i];
     }

@@ -20,7 +20,12 @@ constexpr double roughness_in_weight = 0.03;
 }  // namespace
 
 ArraySums::ArraySums(const InstrumentArray& array, const MotionNoise& motion, std::optional<double> gate)
-    : array_(array), motion_(motion), gate_(gate), scale_(3 / array.mean_information().trace()), totals_(history_length)
+    : array_(array),
+      motion_(motion),
+      gate_(gate),
+      scale_(3 / array.mean_information().trace()),
+      totals_(history_length),
+      roughness_(history_length)
 {
     for (Totals& totals : totals_) {
         totals.sum.setZero(3, static_cast<Eigen::Index>(array.size()));
@@ -125,8 +130,8 @@ void ArraySums::count_in(const Pending& frame, const Eigen::Vector3d& accelerati
         now.rotated[j] = before.rotated[j] + weight * (frame.rate(axis) * h);
     }
     for (std::size_t m = 0; m < array_.size(); ++m)
-        now.own[m] = before.own[m] + weight * (array_[m].covariance - array_.mean_covariance()) * weight;
-    now.roughness = largest * largest * rough;
+        if (array_[m].kind == m) now.own[m] = before.own[m] + weight * (array_[m].covariance - array_.mean_covariance()) * weight;
+    roughness_[next_] = largest * largest * rough;
     now.sequence = frame.sequence;
     next_ = (next_ + 1) % history_length;
     size_ = std::min(size_ + 1, history_length);
@@ -140,7 +145,7 @@ Eigen::Matrix3d ArraySums::common_covariance(std::size_t window) const
     const Eigen::Matrix3d constant =
         motion_.bias_floor_rad_s * (newest.biased - oldest.biased) + motion_.rate_error * (newest.turned - oldest.turned);
     double roughest = 0;
-    for (std::size_t age = 0; motion_.roughness_s > 0 && age < window; ++age) roughest = std::max(roughest, total(age).roughness);
+    for (std::size_t age = 0; motion_.roughness_s > 0 && age < window; ++age) roughest = std::max(roughest, roughness_[place(age)]);
     const double outlier = motion_.roughness_s * motion_.roughness_s * roughest;
     Eigen::Matrix3d floors = constant * constant.transpose();
     for (std::size_t j = 0; j < 3; ++j) {
@@ -156,6 +161,12 @@ ArraySums::Contradiction ArraySums::Fit::contradiction(std::size_t instrument) c
     return {.u = own * (value[instrument] - fused), .q = own - own * covariance * own};
 }
 
+double ArraySums::Fit::chi_square(std::size_t instrument) const
+{
+    const Eigen::Vector3d deviation = value[instrument] - fused;
+    return deviation.dot(contrast[instrument] * deviation);
+}
+
 ArraySums::Fit ArraySums::fit(std::size_t window) const
 {
     const Totals& newest = total(0);
@@ -166,17 +177,33 @@ ArraySums::Fit ArraySums::fit(std::size_t window) const
     fit.weight = newest.weight - oldest.weight;
     Eigen::Matrix3d total_information = Eigen::Matrix3d::Zero();
     Eigen::Vector3d total_value = Eigen::Vector3d::Zero();
+    std::array<Eigen::Matrix3d, InstrumentArray::max_instruments> own;  // R_m of a kind
     for (std::size_t m = 0; m < array_.size(); ++m) {
+        const std::size_t kind = array_[m].kind;
+        if (kind == m) own[m] = common + newest.own[m] - oldest.own[m];
+        fit.information[m] = kind == m ? Eigen::Matrix3d(own[m].inverse()) : fit.information[kind];
         if (!array_.compared(m)) continue;
         const auto column = static_cast<Eigen::Index>(m);
         fit.value[m] = newest.sum.col(column) - oldest.sum.col(column);
-        fit.information[m] = (common + newest.own[m] - oldest.own[m]).inverse();
         total_information += fit.information[m];
         total_value += fit.information[m] * fit.value[m];
     }
     fit.covariance = total_information.inverse();
     fit.fused = fit.covariance * total_value;
+    for (std::size_t m = 0; m < array_.size(); ++m) {
+        const std::size_t kind = array_[m].kind;
+        fit.contrast[m] = kind == m ? Eigen::Matrix3d((own[m] - fit.covariance).inverse()) : fit.contrast[kind];
+    }
     return fit;
+}
+
+double ArraySums::largest_chi_square(std::size_t window) const
+{
+    const Fit over = fit(window);
+    double largest = 0;
+    for (std::size_t m = 0; m < array_.size(); ++m)
+        if (array_.compared(m)) largest = std::max(largest, over.chi_square(m));
+    return largest;
 }
 
 }  // namespace quorient::fdi

@@ -15,6 +15,9 @@ constexpr double saturation = 0.975;
 /// … by a standard deviation of this times its range.
 constexpr double excess = 0.5;
 
+/// Of two covariances that differ by the directions of their axes alone.
+constexpr double rounding = 1e-12;
+
 void weigh(const geometry::SensorCluster& cluster, const geometry::AxisVector& variance, InstrumentArray::Instrument& instrument)
 {
     const auto n = static_cast<Eigen::Index>(instrument.size);
@@ -27,6 +30,13 @@ void weigh(const geometry::SensorCluster& cluster, const geometry::AxisVector& v
     }
     instrument.covariance = information.inverse();
     instrument.body_from_axes = instrument.covariance * weighted;
+}
+
+/// Place of the first instrument with the covariance of this one, which is in the list and weighed, as all before it.
+std::size_t first_alike(const std::vector<InstrumentArray::Instrument>& instruments, const InstrumentArray::Instrument& instrument)
+{
+    const auto alike = [&](const auto& other) { return other.covariance.isApprox(instrument.covariance, rounding); };
+    return static_cast<std::size_t>(std::find_if(instruments.begin(), instruments.end(), alike) - instruments.begin());
 }
 
 }  // namespace
@@ -49,6 +59,7 @@ tl::expected<InstrumentArray, std::string> InstrumentArray::make(const geometry:
             return tl::unexpected(
                 std::string("compares instruments that each measure all three directions; these axes do not: use glt or subset"));
         weigh(cluster, variance, instrument);
+        instrument.kind = first_alike(array.instruments_, instrument);
         array.mean_covariance_ += instrument.covariance / static_cast<double>(array.size());
     }
     array.mean_information_ = array.mean_covariance_.inverse();

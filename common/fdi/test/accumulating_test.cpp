@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <random>
 #include <span>
 #include <string>
@@ -73,6 +74,17 @@ private:
 
     std::mt19937_64 random_;
 };
+
+Assessment assess(Accumulating& detector, const SensorFrame& frame)
+{
+    Assessment assessment;
+    detector.assess({.identity = identity_of(frame),
+                     .interval_s = frame.interval_s,
+                     .increment = std::span(frame.increment).first(frame.axis_count),
+                     .valid = frame.valid_mask},
+                    assessment);
+    return assessment;
+}
 
 struct Outcomes {
     AxisMask isolated = 0;
@@ -192,11 +204,7 @@ TEST(Accumulating, does_not_blame_an_axis_that_alone_is_near_its_range)
         SensorFrame frame = array.frame(sequence, Array::rest);
         const bool saturated = sequence >= 200 && sequence < 230;
         if (saturated) frame.increment[3] = range_rad_s * interval_s;
-        detector->assess({.identity = identity_of(frame),
-                          .interval_s = interval_s,
-                          .increment = std::span(frame.increment).first(9),
-                          .valid = array.cluster.all()},
-                         assessment);
+        assessment = assess(*detector, frame);
         EXPECT_EQ(detector->saturated(), sequence >= 200 && sequence <= 230) << "frame " << sequence;
         EXPECT_NE(assessment.outcome, Outcome::isolated);
     }
@@ -226,11 +234,7 @@ Unlike play_unlike(std::uint64_t seed, double bias_deg_s, std::size_t axis)
         SensorFrame frame = array.frame(sequence, turning);
         for (std::size_t other = 3; other < 9; ++other) frame.increment[other] += rate_sigma_of_others * interval_s * normal(random);
         frame.increment[axis] += bias_deg_s * degree * interval_s;
-        detector->assess({.identity = {.epoch = 1, .sequence = sequence},
-                          .interval_s = interval_s,
-                          .increment = std::span(frame.increment).first(9),
-                          .valid = frame.valid_mask},
-                         assessment);
+        assessment = assess(*detector, frame);
         result.largest = std::max(result.largest, assessment.statistic);
         result.isolated = assessment.isolated;
     }
@@ -250,45 +254,35 @@ TEST(Accumulating, names_who_is_wrong_where_a_turn_hides_one_direction_of_instru
     }
 }
 
-TEST(Accumulating, is_ambiguous_between_two_instruments)
+/// The newest assessment of an array at rest, whose instruments `wrong` have had 20 deg/s too much on their first axes for a hundred
+/// frames.
+Assessment assessment_of(const char* layout, std::initializer_list<std::size_t> wrong)
 {
-    Array array(9, "triads-2");
+    Array array(9, layout);
     DetectorSettings settings;
     settings.instruments = true;
-    auto detector = Accumulating::make(settings, array.cluster).value();
+    const auto detector = Accumulating::make(settings, array.cluster).value();
     Assessment assessment;
-    for (std::uint64_t sequence = 0; sequence < 300; ++sequence) {
+    for (std::uint64_t sequence = 0; sequence <= 300; ++sequence) {
         SensorFrame frame = array.frame(sequence, Array::rest);
-        if (sequence > 200) frame.increment[0] += 20 * degree * interval_s;
-        detector->assess({.identity = identity_of(frame),
-                          .interval_s = interval_s,
-                          .increment = std::span(frame.increment).first(6),
-                          .valid = array.cluster.all()},
-                         assessment);
+        for (const std::size_t instrument : wrong)
+            if (sequence > 200) frame.increment[3 * instrument] += 20 * degree * interval_s;
+        assessment = assess(*detector, frame);
+        EXPECT_NE(assessment.outcome, Outcome::isolated) << "frame " << sequence;
     }
+    return assessment;
+}
+
+TEST(Accumulating, is_ambiguous_between_two_instruments)
+{
+    const Assessment assessment = assessment_of("triads-2", {0});
     EXPECT_EQ(assessment.outcome, Outcome::ambiguous);
     EXPECT_EQ(assessment.candidate_count, 2);
 }
 
 TEST(Accumulating, names_nobody_where_two_instruments_are_wrong_alike)
 {
-    Array array(9, "triads-4");
-    DetectorSettings settings;
-    settings.instruments = true;
-    auto detector = Accumulating::make(settings, array.cluster).value();
-    Assessment assessment;
-    for (std::uint64_t sequence = 0; sequence < 300; ++sequence) {
-        SensorFrame frame = array.frame(sequence, Array::rest);
-        for (const std::size_t wrong : {0, 1})
-            if (sequence > 200) frame.increment[3 * wrong] += 20 * degree * interval_s;
-        detector->assess({.identity = identity_of(frame),
-                          .interval_s = interval_s,
-                          .increment = std::span(frame.increment).first(12),
-                          .valid = array.cluster.all()},
-                         assessment);
-        ASSERT_NE(assessment.outcome, Outcome::isolated) << "frame " << sequence;
-    }
-    EXPECT_EQ(assessment.outcome, Outcome::ambiguous);
+    EXPECT_EQ(assessment_of("triads-4", {0, 1}).outcome, Outcome::ambiguous);
 }
 
 TEST(Accumulating, says_how_much_is_left_to_detect)

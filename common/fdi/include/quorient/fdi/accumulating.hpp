@@ -88,6 +88,7 @@ private:
 
     Accumulating(const DetectorSettings& settings, const geometry::SensorCluster& cluster, ArraySums sums, std::optional<ArraySums> gated);
 
+    double most_possible(std::size_t window, const Limits& limits) const;
     Finding examine(const ArraySums& sums, std::size_t window, const Limits& limits) const;
     Finding examine(std::size_t window, const Limits& limits) const;
     void weigh(std::size_t place, const ArraySums::Fit& fit, const Limits& limits, Finding& finding) const;

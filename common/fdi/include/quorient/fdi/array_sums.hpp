@@ -52,8 +52,11 @@ public:
         Eigen::Matrix3d weight;                                                     ///< W
         Eigen::Matrix3d covariance;                                                 ///< of y
         Eigen::Vector3d fused;                                                      ///< y
+        std::array<Eigen::Matrix3d, InstrumentArray::max_instruments> contrast;     ///< (cov (y_m - y))^-1 = (R_m - cov y)^-1
 
         Contradiction contradiction(std::size_t instrument) const;
+        /// u' Q^-1 u of three degrees of freedom: no error of this instrument alone can explain more.
+        double chi_square(std::size_t instrument) const;
     };
 
     /// @param gate  chi-square of three degrees of freedom; absent: all frames count fully.
@@ -70,6 +73,9 @@ public:
 
     /// @param window  1 .. min(size() - 1, longest_window) frames up to the newest one counted.
     Fit fit(std::size_t window) const;
+
+    /// Over the instruments that are compared.
+    double largest_chi_square(std::size_t window) const;
 
     /// Sequence of the first frame of this window.
     std::uint64_t begin_of(std::size_t window) const { return total(window - 1).sequence; }
@@ -99,8 +105,7 @@ private:
         Eigen::Matrix3d turned = Eigen::Matrix3d::Zero();  ///< W_k |omega| h
         std::array<Eigen::Matrix3d, 3> rotated{Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero(),
                                                Eigen::Matrix3d::Zero()};      ///< W_k omega_j h
-        std::array<Eigen::Matrix3d, InstrumentArray::max_instruments> own{};  ///< W_k (C_m - C) W_k
-        double roughness = 0;  ///< of this frame alone, weighted: |W_k|^2 times the square that roughness_s^2 multiplies
+        std::array<Eigen::Matrix3d, InstrumentArray::max_instruments> own{};  ///< W_k (C_m - C) W_k, of a kind
         std::uint64_t sequence = 0;
     };
 
@@ -109,13 +114,15 @@ private:
     Eigen::Matrix3d motion_covariance(const Pending& frame, const Eigen::Vector3d& acceleration_after, double blow, double rough) const;
     double share_of(const Pending& frame, const Eigen::Matrix3d& information) const;
     Eigen::Matrix3d common_covariance(std::size_t window) const;
-    const Totals& total(std::size_t age) const { return totals_[(next_ + history_length - 1 - age) % history_length]; }
+    std::size_t place(std::size_t age) const { return (next_ + history_length - 1 - age) % history_length; }
+    const Totals& total(std::size_t age) const { return totals_[place(age)]; }
 
     InstrumentArray array_;
     MotionNoise motion_;
     std::optional<double> gate_;
-    double scale_;                ///< c: W_k has trace 3 at rest
-    std::vector<Totals> totals_;  ///< ring
+    double scale_;                   ///< c: W_k has trace 3 at rest
+    std::vector<Totals> totals_;     ///< ring
+    std::vector<double> roughness_;  ///< ring; of each frame alone, weighted: |W_k|^2 times the square that roughness_s^2 multiplies
     std::size_t next_ = 0;
     std::size_t size_ = 0;
     std::uint64_t count_ = 0;

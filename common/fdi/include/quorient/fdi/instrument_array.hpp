@@ -24,6 +24,7 @@ public:
         AxisMask mask = 0;
         Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, static_cast<int>(max_axes)> body_from_axes;  ///< B_m
         Eigen::Matrix3d covariance;  ///< C_m, of one increment at rest
+        std::size_t kind = 0;        ///< place of the first instrument of this covariance: what depends on it alone is reckoned once
     };
 
     /// @param variance  of one increment at rest, per axis.
