@@ -37,7 +37,7 @@ int EventLoop::run()
     while (!quit_ && !stop_.load(std::memory_order_relaxed)) {
         // What comes while it is handled ends the wait at once: no second look at every input, which would cost each sample as much again.
         dispatch();
-        if (!work()) wait();
+        if (!work() && !quit_) wait();
     }
     return exit_code_;
 }
@@ -65,14 +65,17 @@ std::int64_t EventLoop::next_deadline_ns() const
 void EventLoop::wait()
 {
     const auto until_timer = next_deadline_ns() - clock_.steady_ns();
-    bus_.wait(spin_ ? 0 : std::clamp<std::int64_t>(until_timer, 0, longest_wait_ns));
+    // A wait of no time at all is a sleep, too: of the kernel's timer slack, 50 us.
+    if (spin_ || until_timer <= 0) return;
+    bus_.wait(std::min(until_timer, longest_wait_ns));
 }
 
 bool EventLoop::fire_timers()
 {
     bool any = false;
+    const auto now = clock_.steady_ns();
     for (auto& timer : timers_) {
-        if (timer.deadline_ns_ > clock_.steady_ns()) continue;
+        if (timer.deadline_ns_ > now) continue;
         timer.cancel();
         timer.handler_();
         any = true;

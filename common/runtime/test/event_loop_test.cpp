@@ -92,6 +92,69 @@ TEST_F(Loop, lets_a_handler_set_its_own_timer_again)
     EXPECT_EQ(fired, 3);
 }
 
+/// A bus without data, on which time passes as long as it is waited for.
+class EmptyBus final : public bus::Bus {
+public:
+    explicit EmptyBus(VirtualClock& clock) : clock_(clock) {}
+
+    void wait(std::int64_t timeout_ns) override
+    {
+        waits.push_back(timeout_ns);
+        clock_.set(clock_.steady_ns() + timeout_ns);
+    }
+    Vendor vendor() const override { return Vendor::local; }
+
+    std::vector<std::int64_t> waits;
+
+private:
+    std::unique_ptr<bus::Writer> make_writer(const bus::TopicSpec&, const bus::WriterOptions&) override { return nullptr; }
+    std::unique_ptr<bus::Reader> make_reader(const bus::TopicSpec&) override { return nullptr; }
+
+    VirtualClock& clock_;
+};
+
+class Waits : public testing::Test {
+protected:
+    VirtualClock clock;
+    EmptyBus bus{clock};
+    std::atomic<bool> stop{false};
+    EventLoop loop{bus, clock, stop};
+};
+
+TEST_F(Waits, last_until_the_next_timer)
+{
+    loop.timer([this] { loop.quit(0); }).set(100);
+    loop.run();
+    EXPECT_EQ(bus.waits, (std::vector<std::int64_t>{100}));
+}
+
+TEST_F(Waits, are_left_out_while_a_timer_is_due)
+{
+    int rounds = 0;
+    Timer* again = nullptr;
+    auto& timer = loop.timer([&] {
+        if (++rounds == 3) loop.quit(0);
+        else again->set(0);
+    });
+    again = &timer;
+    timer.set(0);
+    loop.run();
+    EXPECT_EQ(rounds, 3);
+    EXPECT_TRUE(bus.waits.empty());
+}
+
+TEST_F(Waits, are_left_out_where_the_loop_spins)
+{
+    loop.spin(true);
+    loop.when_idle([this] {
+        clock.set(clock.steady_ns() + 10);
+        return false;
+    });
+    loop.timer([this] { loop.quit(0); }).set(100);
+    loop.run();
+    EXPECT_TRUE(bus.waits.empty());
+}
+
 TEST_F(Loop, ends_with_the_exit_code_it_was_told)
 {
     loop.timer([&] { loop.quit(7); }).set(0);
