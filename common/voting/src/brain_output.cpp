@@ -51,14 +51,17 @@ BallotPaper Voter::Brain::paper_of(std::uint64_t sequence) const
 }
 
 /// Lanes that still use what a majority reports and a living lane leaves out: never the output, even where nobody else has spoken of
-/// this frame yet. The frame waits for those who know better, until they are silent.
+/// this frame yet. The frame waits for those who know better, until they are silent. Where one of those spoke of this frame before it
+/// knew, nobody will correct it: it goes out rather than be left out, contaminated for as many frames as isolation took.
 LaneMask Voter::Brain::using_condemned_axes(const BallotPaper& paper) const
 {
-    AxisMask condemned = 0;
+    AxisMask known = 0, known_too_late = 0;
     for (LaneIndex lane = 0; lane < paper.lanes; ++lane) {
-        if (!board_.lane(lane).blocked()) condemned |= corroboration_.held_out(lane);
+        if (board_.lane(lane).blocked()) continue;
+        known |= corroboration_.held_out(lane);
+        if (paper.sample[lane] != nullptr) known_too_late |= board_.lane(lane).newest().isolated_mask & ~paper.sample[lane]->isolated_mask;
     }
-    condemned &= paper.corroborated;
+    const AxisMask condemned = paper.corroborated & known & ~known_too_late;
     LaneMask lanes = 0;
     for (LaneIndex lane = 0; lane < paper.lanes; ++lane) {
         if (paper.sample[lane] != nullptr && (condemned & ~paper.sample[lane]->isolated_mask) != 0) lanes |= lane_bit(lane);

@@ -49,6 +49,15 @@ struct Fault {
     }
 };
 
+/// Suspected by every detector from frame 50 on.
+Fault isolated_by_all(std::uint64_t from)
+{
+    Fault fault;
+    fault.suspected.fill(50);
+    fault.isolated.fill(from);
+    return fault;
+}
+
 std::size_t changes(const Scene& scene)
 {
     return scene.voter.counters().primary_changes;
@@ -216,6 +225,37 @@ TEST(Isolation, of_lanes_that_have_died_no_longer_holds_the_last_one_back)
     for (std::uint64_t sequence = 100; sequence < 150; ++sequence) scene.at(Scene::time_of(sequence), fault.sample(2, sequence));
     EXPECT_EQ(scene.last().primary_lane, 3U);
     EXPECT_EQ(scene.voter.level(), VoteLevel::single);
+}
+
+/// Frames of which all lanes spoke before they knew nobody will correct: they go out, contaminated for as long as isolation took.
+TEST(Isolation, that_verdicts_tell_before_the_frames_arrive_leaves_no_frame_out)
+{
+    for (const std::uint64_t applied : {52U, 53U}) {
+        Scene scene;
+        const Fault told = isolated_by_all(52), made = isolated_by_all(applied);
+        for (std::uint64_t sequence = 1; sequence < 100; ++sequence) {
+            for (std::size_t lane = 0; lane < 3; ++lane) scene.at(Scene::time_of(sequence), told.verdict(lane, sequence));
+            for (std::size_t lane = 0; lane < 3; ++lane) scene.at(Scene::time_of(sequence) + 2 * ms, made.sample(lane, sequence - 1));
+        }
+        ASSERT_EQ(scene.outputs.size(), 99U) << "applied from frame " << applied << " on";
+        for (const Output& output : scene.outputs) {
+            const std::uint64_t sequence = output.attitude.sequence;
+            const double allowed_rad = sequence < 50 || sequence >= applied ? 0 : made.drift_rad * static_cast<double>(sequence - 49);
+            EXPECT_LE(geodesic_angle(output.attitude.attitude, truth(sequence)), allowed_rad + 1e-9) << "frame " << sequence;
+        }
+    }
+}
+
+TEST(Isolation, that_detectors_tell_and_no_lane_ever_applies_is_never_put_out)
+{
+    Scene scene;
+    const Fault told = isolated_by_all(52), made = isolated_by_all(never);
+    for (std::uint64_t sequence = 0; sequence < 100; ++sequence) {
+        for (std::size_t lane = 0; lane < 3; ++lane) scene.at(Scene::time_of(sequence), told.verdict(lane, sequence));
+        for (std::size_t lane = 0; lane < 3; ++lane) scene.at(Scene::time_of(sequence), made.sample(lane, sequence));
+    }
+    EXPECT_EQ(scene.last().sequence, 51U);
+    EXPECT_NE(scene.voter.level(), VoteLevel::full);
 }
 
 TEST(Isolation, by_candidates_of_another_detector_counts)
