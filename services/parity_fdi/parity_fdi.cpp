@@ -121,7 +121,7 @@ bool ParityFdi::prepare(const ClusterDescription& description)
 
 void ParityFdi::assess(const SensorFrame& frame)
 {
-    if (frame.epoch != last_.epoch) absence_ = {};
+    if (frame.epoch != last_.epoch) absence_ = {0, frame.sequence};
     else if (frame.sequence > last_.sequence + 1) absence_ = {last_.sequence + 1, frame.sequence};
     FaultVerdict verdict = monitor_->assess(frame);
     verdict.unit = settings_.process.node.unit;
@@ -206,8 +206,8 @@ void ParityFdi::on_voted(const VotedAttitude& voted)
     else if (monitor_ && voted.epoch == last_.epoch) adopt_missed(voted);
 }
 
-/// A fault that began while this detector was cut off has no onset here: four axes alone cannot name it any more. What a majority of lanes
-/// stands behind is taken over for such an axis, and for no other.
+/// A fault that began while this detector was cut off, or before it started, has no onset here: four axes alone cannot name it any more.
+/// What a majority of lanes stands behind is taken over for such an axis, and for no other.
 void ParityFdi::adopt_missed(const VotedAttitude& voted)
 {
     const std::uint64_t warm_up = settings_.verdict.warm_up_frames;  // an onset so close to the gap was not seen either

@@ -221,6 +221,30 @@ TEST_F(TakeOver, of_a_fault_that_began_while_it_was_cut_off_follows_the_majority
     EXPECT_EQ(rig.verdict().excluded_from[1], first_lost + 50);
 }
 
+TEST_F(TakeOver, of_a_fault_that_began_before_it_started_comes_late_and_counts_nevertheless)
+{
+    start();
+    frames(100);
+    detector.reset();
+    start();
+    run_until_it_judges();
+    voters_stand_for(axis_1, VoteLevel::full, 60);
+    frames(2);
+    EXPECT_EQ(rig.verdict().isolated_mask, axis_1) << "a voter found only after the first judgement";
+}
+
+TEST_F(TakeOver, of_a_fault_that_began_after_it_started_follows_nobody)
+{
+    start();
+    frames(100);
+    detector.reset();
+    start();
+    frames(100);
+    voters_stand_for(axis_1, VoteLevel::full, 150);
+    frames(50);
+    EXPECT_EQ(rig.verdict().isolated_mask, 0U) << "it saw those frames itself";
+}
+
 TEST_F(TakeOver, of_a_fault_that_began_long_before_it_was_cut_off_follows_nobody)
 {
     start();
