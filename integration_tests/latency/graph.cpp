@@ -64,7 +64,8 @@ void drain(RawReader& reader)
 template <class Round>
 void loop(Raw& raw, const Options& options, Round round)
 {
-    while (!stopped && round()) raw.wait(options.spin ? 0 : longest_wait_ns);
+    while (!stopped && round())
+        if (!options.spin) raw.wait(longest_wait_ns);
 }
 
 void run_sensor(Raw& raw, const Options& options)
@@ -82,7 +83,7 @@ void run_sensor(Raw& raw, const Options& options)
     while (!stopped && due < end) {
         const auto now = now_ns();
         if (now < due) {
-            raw.wait(options.spin ? 0 : due - now);
+            if (!options.spin) raw.wait(due - now);
             drain<VotedAttitude>(*outputs);
             continue;
         }

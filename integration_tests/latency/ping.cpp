@@ -76,7 +76,10 @@ public:
     void send(const SensorFrame& frame) override { out_.publish(frame); }
     bool receive(SensorFrame& frame) override
     {
-        return receive_within_patience([&] { return in_.take(frame); }, [&](std::int64_t left) { bus_->wait(spins_() ? 0 : left); });
+        return receive_within_patience([&] { return in_.take(frame); },
+                                       [&](std::int64_t left) {
+                                           if (!spins_()) bus_->wait(left);
+                                       });
     }
     bool connected() override { return out_.status().matched > 0 && in_.status().matched > 0; }
 
@@ -107,7 +110,10 @@ public:
     void send(const SensorFrame& frame) override { out_->write(&frame); }
     bool receive(SensorFrame& frame) override
     {
-        return receive_within_patience([&] { return in_->take(&frame); }, [&](std::int64_t left) { raw_->wait(spins_() ? 0 : left); });
+        return receive_within_patience([&] { return in_->take(&frame); },
+                                       [&](std::int64_t left) {
+                                           if (!spins_()) raw_->wait(left);
+                                       });
     }
     bool connected() override { return out_->matched() > 0 && in_->matched() > 0; }
 
