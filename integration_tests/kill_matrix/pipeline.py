@@ -1,4 +1,5 @@
 """One system under test: `quorient launch`, its children, and what three independent listeners hear of it."""
+import argparse
 import json
 import os
 import pathlib
@@ -14,13 +15,22 @@ from harness import BIN, CONFIGURATIONS  # noqa: E402
 from streams import Recording, parse_truth, parse_voted  # noqa: E402
 
 RATE_HZ = 200
-INTERVAL_S = 1 / RATE_HZ
 ALL_LANES = 0b111
 END_OF_GRACE_FRAMES = 20  # frames in flight while everything stops are nobody's loss
 
 
 class NotInTime(Exception):
     pass
+
+
+def rate_between(least_hz, most_hz=1000):
+    """For argparse: whole frames per second within what a system under test can be judged at."""
+    def parse(text):
+        if not text.isdecimal() or not least_hz <= int(text) <= most_hz:
+            raise argparse.ArgumentTypeError(f"'{text}': a whole number from {least_hz} to {most_hz} Hz is needed")
+        return int(text)
+
+    return parse
 
 
 def ask_for_priority():
@@ -34,14 +44,15 @@ def ask_for_priority():
 class Pipeline:
     """Use as a context: whatever happens inside, every process that it started is ended by its id."""
 
-    def __init__(self, *assignments, plain_vendor="cyclonedds", launch_timeout_s=30):
+    def __init__(self, *assignments, plain_vendor="cyclonedds", launch_timeout_s=30, rate_hz=RATE_HZ):
+        self.rate_hz = rate_hz
         self.run_directory = pathlib.Path(tempfile.mkdtemp(prefix="quorient-kill-"))
         self.environment = dict(os.environ, QUORIENT_RUN_DIR=str(self.run_directory))
         self.domain = 120 + int.from_bytes(os.urandom(2), "big") % 100
         self.timeout_s = launch_timeout_s
         self.started_again = []
         self.stopped = []
-        settings = [word for assignment in ("expect=null", *assignments) for word in ("--set", assignment)]
+        settings = [word for assignment in ("expect=null", f"source.rate_hz={rate_hz}", *assignments) for word in ("--set", assignment)]
         self.launch = subprocess.Popen(
             self.command("launch", CONFIGURATIONS / "demo.yaml", "--domain", self.domain, "--json", *settings),
             env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
@@ -91,10 +102,11 @@ class Pipeline:
 
     def until_frame(self, frame):
         """Returns at the moment when the publisher's frame is due, told from the fastest of the truths before it. @returns that frame."""
-        self.until(lambda: self.truth.newest and self.truth.newest.identity[1] >= frame - RATE_HZ / 4, f"frame {frame} is near")
+        self.until(lambda: self.truth.newest and self.truth.newest.identity[1] >= frame - self.rate_hz / 4, f"frame {frame} is near")
         epoch = self.truth.newest.identity[0]
-        start_s = min(truth.arrival_s - truth.identity[1] * INTERVAL_S for truth in self.truth.samples[-RATE_HZ:] if truth.identity[0] == epoch)
-        time.sleep(max(0.0, start_s + frame * INTERVAL_S - time.monotonic()))
+        heard = [truth for truth in self.truth.samples[-self.rate_hz:] if truth.identity[0] == epoch]
+        start_s = min(truth.arrival_s - truth.identity[1] / self.rate_hz for truth in heard)
+        time.sleep(max(0.0, start_s + frame / self.rate_hz - time.monotonic()))
         return (epoch, int(frame))
 
     def process_of(self, name):

@@ -7,9 +7,10 @@ import time
 from typing import Callable, NamedTuple
 
 from hosts import Hosts, not_permitted
+from load import Load
 from spread_pipeline import Place, SpreadPipeline  # first of these: it tells where the kill matrix is
-from judge import judge
-from pipeline import ALL_LANES, RATE_HZ, NotInTime, ask_for_priority
+from judge import Figures, judge
+from pipeline import ALL_LANES, RATE_HZ, NotInTime, ask_for_priority, rate_between
 from streams import DEGRADED, HELD, SINGLE
 
 FAULTY_AXIS = 1
@@ -95,6 +96,14 @@ EVERYTHING = [
 BY_NAME = {cell.name: cell for cell in EVERYTHING}
 
 
+class Outcome(NamedTuple):
+    figures: Figures = None
+    levels: str = ""  # what the level said while the harm lasted
+    busy: float = None  # the share of the machine's time that somebody used; None where the run did not come so far
+    broken: list = []  # the bounds that were not met
+    logs: dict = {}
+
+
 def back(sample):
     return sample.vouching == ALL_LANES and sample.excluded == 0 and sample.level <= SINGLE
 
@@ -115,34 +124,35 @@ def await_all_lanes(pipeline):
     pipeline.until(steady, "all lanes again behind both voters", 20)
 
 
-def run(cell):
-    """@returns figures, what the level said, the bounds that were not met, and the logs."""
+def run(cell, rate_hz):
     layout = cell.layout()
     fault_s = layout.begin_s + FAULT_AFTER_S
     faults = [f"axis={FAULTY_AXIS},kind=scale,value=0.8,start={fault_s}"] if cell.fault else []
     with Hosts(layout.networks_of_host, cell.impaired) as hosts, \
-            SpreadPipeline(hosts, layout.places, layout.listener, "source.duration_s=600", f"source.faults={faults}") as pipeline:
+            SpreadPipeline(hosts, layout.places, layout.listener, rate_hz, "source.duration_s=600", f"source.faults={faults}") as pipeline:
         pipeline.until_running()
-        begun = pipeline.until_frame(layout.begin_s * RATE_HZ)
+        load = Load()
+        begun = pipeline.until_frame(layout.begin_s * rate_hz)
         cell.begin(hosts)
-        healed = pipeline.until_frame((layout.begin_s + cell.duration_s) * RATE_HZ)
+        healed = pipeline.until_frame((layout.begin_s + cell.duration_s) * rate_hz)
         cell.end(hosts)
         late = None
         try:
             await_all_lanes(pipeline)
         except NotInTime as problem:
             late = str(problem)
+        busy = load.busy()
         summary = pipeline.finish()
         merged = pipeline.merged.samples
         figures = judge(merged, pipeline.plain.samples, pipeline.truth.samples, summary, healed, pipeline.end,
                         1 << FAULTY_AXIS if cell.fault else 0, (1, 2), back)
-        during = [sample for sample in merged if (begun[0], begun[1] + NOTICED_S * RATE_HZ) <= sample.identity < healed]
+        during = [sample for sample in merged if (begun[0], begun[1] + NOTICED_S * rate_hz) <= sample.identity < healed]
         broken = list(bounds_broken(cell, figures, during))
         broken += [f"{name} ended with {code}" for name, code in pipeline.gone.items()]
         if late:
             broken.append(late)
         logs = {name: pipeline.log_of(name) for name in layout.places} if broken else {}
-    return figures, said(during), broken, logs
+    return Outcome(figures, said(during), busy, broken, logs)
 
 
 def said(during):
@@ -174,28 +184,30 @@ def bounds_broken(cell, figures, during):
 
 
 HEADER = ("cell", "frames missing", "plain gap [frames]", "level meanwhile", "largest error [rad]", "final error [rad]",
-          "wrong isolations", "healed to all lanes [frames]", "outcome")
+          "wrong isolations", "healed to all lanes [frames]", "processors busy", "outcome")
 
 
-def row(cell, figures, levels, broken, attempts):
+def row(cell, outcome, attempts):
+    figures, levels, busy, broken, _ = outcome
     if figures is None:
-        return (cell.name, *("–",) * 7, "; ".join(broken))
-    outcome = "; ".join(broken) if broken else "holds" if attempts == 1 else f"holds at attempt {attempts}"
+        return (cell.name, *("–",) * 8, "; ".join(broken))
+    verdict = "; ".join(broken) if broken else "holds" if attempts == 1 else f"holds at attempt {attempts}"
     return (cell.name, figures.missing, figures.plain_gap, levels, f"{figures.largest_error_rad:.1e}", f"{figures.final_error_rad:.1e}",
-            figures.wrong_isolations, "–" if figures.frames_to_full is None else figures.frames_to_full, outcome)
+            figures.wrong_isolations, "–" if figures.frames_to_full is None else figures.frames_to_full, f"{busy:.0%}", verdict)
 
 
-def attempt(cell, attempts_allowed=2):
-    """A shared machine may starve one attempt of its time: the second one counts, and the table says so."""
+def attempt(cell, rate_hz, attempts_allowed=2):
+    """A shared machine may starve one attempt of its time: the second one counts, and the table says so. @returns outcome, attempts."""
     for attempts in range(1, attempts_allowed + 1):
         try:
-            figures, levels, broken, logs = run(cell)
+            outcome = run(cell, rate_hz)
         except NotInTime as problem:
-            figures, levels, broken, logs = None, "", [str(problem)], {}
-        if not broken:
+            outcome = Outcome(broken=[str(problem)])
+        if not outcome.broken:
             break
-        print(f"{cell.name}: attempt {attempts}: {'; '.join(broken)}", file=sys.stderr, flush=True)
-    return figures, levels, broken, logs, attempts
+        busy = "" if outcome.busy is None else f", processors {outcome.busy:.0%} busy"
+        print(f"{cell.name}: attempt {attempts}{busy}: {'; '.join(outcome.broken)}", file=sys.stderr, flush=True)
+    return outcome, attempts
 
 
 def main():
@@ -205,6 +217,7 @@ def main():
     parser.add_argument("--list", action="store_true")
     parser.add_argument("--logs", action="store_true", help="show the logs of the processes of a cell that does not hold")
     parser.add_argument("--attempts", type=int, default=2)
+    parser.add_argument("--rate", type=rate_between(20), metavar="HZ", default=RATE_HZ, help="of the system")
     options = parser.parse_args()
     if options.list:
         print("\n".join(BY_NAME))
@@ -222,11 +235,11 @@ def main():
     failed = 0
     print("| " + " | ".join(HEADER) + " |\n|" + "---|" * len(HEADER), flush=True)
     for cell in cells:
-        figures, levels, broken, logs, attempts = attempt(cell, options.attempts)
-        failed += bool(broken)
-        print("| " + " | ".join(map(str, row(cell, figures, levels, broken, attempts))) + " |", flush=True)
+        outcome, attempts = attempt(cell, options.rate, options.attempts)
+        failed += bool(outcome.broken)
+        print("| " + " | ".join(map(str, row(cell, outcome, attempts))) + " |", flush=True)
         if options.logs:
-            for name, text in logs.items():
+            for name, text in outcome.logs.items():
                 print(f"--- {name}\n{text}", file=sys.stderr)
     print(f"\n{len(cells)} cells, {failed} do not hold, {time.monotonic() - started:.0f} s; made by `{' '.join(sys.argv)}`")
     return 1 if failed else 0

@@ -34,8 +34,11 @@ def parse_verdict(sample, _):
 class SpreadPipeline(Pipeline):
     """Stands for a Pipeline: the same waits and recordings, without `quorient launch`, which would start all on one host."""
 
-    def __init__(self, hosts, places, listener, *assignments, start_timeout_s=40):
+    def __init__(self, hosts, places, listener, rate_hz, *assignments, start_timeout_s=40):
         """@param places {process name: Place}, listener Place of the recordings."""
+        self.rate_hz = rate_hz
+        self._lease_s = max(0.05, 3 / rate_hz)  # a reader of `voted` that asks for less than the voters offer is refused
+        assignments = (f"source.rate_hz={rate_hz}", *assignments)
         self.run_directory = pathlib.Path(tempfile.mkdtemp(prefix="quorient-networks-"))
         self.environment = dict(os.environ, QUORIENT_RUN_DIR=str(self.run_directory))
         self.domain = DOMAIN
@@ -71,7 +74,7 @@ class SpreadPipeline(Pipeline):
     def _listen(self, place, topic, parse):
         peers = [word for address in self._peers(place) for word in ("--peer", address)]
         command = [*self._hosts.inside(place.host), *self.command("echo", topic, "--json", "--domain", self.domain, "--dds", place.vendor),
-                   "--interface", place.interface, *peers]
+                   "--interface", place.interface, "--lease", str(self._lease_s), *peers]
         self.recordings.append(Recording(command, self.environment, parse))
         return self.recordings[-1]
 
