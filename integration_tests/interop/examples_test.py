@@ -6,6 +6,7 @@ import pathlib
 import re
 import signal
 import unittest
+from statistics import mode
 
 from foreign import BIN, InteropTest, angle, conjugate, example, product
 from harness import CONFIGURATIONS
@@ -88,10 +89,10 @@ class Examples(InteropTest):
 
     def assert_stream_is_true(self, truth, stream, from_sequence=0):
         self.assertGreater(len(stream), 0.9 * len(truth))
-        # Nobody waits for the consumers: one may find the weaker voter first, and the stronger one when the frames come already.
-        found = next((place for place, sample in enumerate(stream) if sample.voter == 1), len(stream))
-        self.assertLess(found, FOUND_WITHIN_FRAMES, "the stronger voter is found")
-        self.assertEqual({sample.voter for sample in stream[found:]}, {1}, "the stronger voter owns the stream")
+        # Nobody waits for the consumers: one may find the weaker voter first, and the stronger one when the frames come already. This one then
+        # sends again what it has kept for a reader that it knew and that did not know it, while the weaker one's last frames arrive.
+        found = 1 + max((place for place, sample in enumerate(stream) if sample.voter != 1), default=-1)
+        self.assertLess(found, FOUND_WITHIN_FRAMES, "the stronger voter is found, and owns the stream from then on")
         for before, after in zip(stream[found:], stream[found + 1:]):
             self.assertGreater(after.output_sequence, before.output_sequence)
         errors = [angle(sample.attitude, truth[sample.sequence]) for sample in stream if sample.sequence >= from_sequence]
@@ -102,7 +103,7 @@ class Examples(InteropTest):
         for name, stream in streams.items():
             with self.subTest(name):
                 self.assert_stream_is_true(truth, stream)
-                self.assertEqual(stream[len(stream) // 2].level, FULL)
+                self.assertEqual(mode(sample.level for sample in stream), FULL)
         self.assertEqual({verdict["isolated_mask"] for verdict in verdicts}, {0})
 
     def test_a_fault_in_the_recording_is_isolated_and_the_consumers_keep_the_attitude(self):
@@ -110,6 +111,7 @@ class Examples(InteropTest):
         for name, stream in streams.items():
             with self.subTest(name):
                 self.assert_stream_is_true(truth, stream, from_sequence=410)  # the fault begins in frame 400
+                self.assertNotIn(FULL, {sample.level for sample in stream if sample.sequence >= 410}, "three axes could tell no further fault")
         self.assertEqual({verdict["isolated_mask"] for verdict in verdicts}, {0b10})
 
     def test_consumers_go_on_with_the_second_voter_when_the_first_is_killed(self):

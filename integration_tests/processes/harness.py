@@ -8,6 +8,8 @@ import tempfile
 import time
 import unittest
 
+from witness import until_held
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 BIN = pathlib.Path(os.environ.get("QUORIENT_BIN", ROOT / "build/release/bin"))
 SHARED = pathlib.Path(os.environ.get("QUORIENT_SHARED_DIR", ROOT.parent / "shared"))
@@ -15,10 +17,49 @@ DATA = pathlib.Path(os.environ.get("QUORIENT_DATA_DIR", SHARED / "data"))
 CONFIGURATIONS = ROOT / "deploy/configurations"
 
 
+class Told(unittest.TestResult):
+    """What one attempt told, to be told again to the result that counts."""
+
+    def __init__(self):
+        super().__init__()
+        self.words = []
+
+    def tell(self, result):
+        for word, arguments in self.words:
+            getattr(result, word)(*arguments)
+
+
+def remember(word):
+    def told(self, *arguments):
+        getattr(unittest.TestResult, word)(self, *arguments)
+        self.words.append((word, arguments))
+
+    return told
+
+
+for outcome in ("addSuccess", "addError", "addFailure", "addSkip", "addSubTest", "addExpectedFailure", "addUnexpectedSuccess"):
+    setattr(Told, outcome, remember(outcome))
+
+
 class ProcessTest(unittest.TestCase):
-    """A run directory and a DDS domain of its own; every process it starts is ended by its id."""
+    """A run directory and a DDS domain of its own; every process it starts is ended by its id. Void, and run again, where it fails while
+    the machine stood still."""
 
     next_domain = 1
+
+    def run(self, result):
+        attempts = []
+
+        def attempt():
+            attempts.append(Told())
+            super(ProcessTest, self).run(attempts[-1])
+            return attempts[-1].wasSuccessful()
+
+        result.startTest(self)
+        until_held(attempt)
+        attempts[-1].tell(result)
+        result.stopTest(self)
+        return result
 
     def setUp(self):
         self.run_directory = pathlib.Path(tempfile.mkdtemp(prefix="quorient-test-"))

@@ -1,0 +1,69 @@
+#!/usr/bin/env python3
+"""Whether a machine gives processes their time: beside a test, one thread per processor naps again and again, and tells how late it woke.
+
+A service that is kept from running is silent, and the system rightly says so. A test that judges an undisturbed system is void then.
+"""
+import os
+import subprocess
+import sys
+import threading
+import time
+
+NAP_S = 0.005
+STALL_S = 0.02  # a lane is silent after five intervals of 5 ms; it works for some of each
+
+
+class Witness:
+    """A context. `longest_s` is the longest time beyond its nap for which a thread did not run, known at the end."""
+
+    longest_s = 0.0
+
+    def __enter__(self):
+        self._process = subprocess.Popen([sys.executable, __file__], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        return self
+
+    def __exit__(self, *_):
+        try:
+            self.longest_s = float(self._process.communicate("", timeout=10)[0])
+        except subprocess.TimeoutExpired:  # it did not run for that long
+            self._process.kill()
+            self._process.communicate()
+            self.longest_s = 10.0
+
+    @property
+    def stood_still(self):
+        return self.longest_s >= STALL_S
+
+
+def until_held(attempt, allowed=3):
+    """Runs `attempt`, and again where it did not hold while this machine stood still. @param attempt returns whether all held. @returns the same."""
+    for number in range(1, allowed + 1):
+        with Witness() as witness:
+            held = attempt()
+        if held or not witness.stood_still or number == allowed:
+            return held
+        print(f"attempt {number} is void: this machine stood still for {1e3 * witness.longest_s:.0f} ms", file=sys.stderr, flush=True)
+
+
+def watch(processor, end, longest_s):
+    os.sched_setaffinity(0, {processor})
+    while not end.is_set():
+        begin_s = time.monotonic()
+        time.sleep(NAP_S)
+        longest_s[processor] = max(longest_s[processor], time.monotonic() - begin_s - NAP_S)
+
+
+def main():
+    end, longest_s = threading.Event(), dict.fromkeys(os.sched_getaffinity(0), 0.0)
+    threads = [threading.Thread(target=watch, args=(processor, end, longest_s)) for processor in longest_s]
+    for thread in threads:
+        thread.start()
+    sys.stdin.read()  # its end is the test's
+    end.set()
+    for thread in threads:
+        thread.join()
+    print(max(longest_s.values()))
+
+
+if __name__ == "__main__":
+    main()
