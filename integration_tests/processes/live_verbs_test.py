@@ -36,12 +36,18 @@ class LiveVerbs(ProcessTest):
         self.assertEqual({sample["voter"] for sample in self.echo("voted", 70)[-5:]}, {1})
 
     def test_inject_breaks_an_axis_and_readmit_trusts_it_again(self):
-        injected = self.run_program("quorient", "inject", "axis=2,kind=bias,value=0.05,start=0,end=0.5", "--domain", self.domain)
+        injected = self.run_program("quorient", "inject", "axis=2,kind=bias,value=0.05,start=0", "--domain", self.domain)
         self.assertEqual(injected.returncode, 0, injected.stdout + injected.stderr)
         isolating = lambda: {verdict["detector"] for verdict in self.echo("verdict", 24) if verdict["isolated_mask"] == 0b100}  # noqa: E731
         self.eventually(lambda: len(isolating()) >= 2, "axis 2 isolated by two detectors")
+        named = ("fdi-a", "fdi-b")  # lane c's modulus predictor may say AMBIGUOUS instead, and then has nothing to readmit
+        refused = self.run_program("quorient", "readmit", "--axis", 2, "--domain", self.domain)
+        self.assertEqual(refused.returncode, 1)
+        for detector in named:
+            self.assertIn(f"{detector}: does not readmit what still disagrees with the others: axis 2", refused.stdout, refused.stderr)
+        self.assertEqual(self.run_program("quorient", "inject", "--clear", "--domain", self.domain).returncode, 0)
         readmitted = self.run_program("quorient", "readmit", "--axis", 2, "--domain", self.domain)
-        for detector in ("fdi-a", "fdi-b"):  # lane c's modulus predictor may say AMBIGUOUS instead, and then has nothing to readmit
+        for detector in named:
             self.assertIn(f"{detector}: readmits axis 2", readmitted.stdout, readmitted.stderr)
         self.assertEqual(readmitted.returncode, 1 if "fdi-c: has not isolated" in readmitted.stdout else 0)
         self.eventually(lambda: self.echo("voter_output", 1)[0]["isolated_mask"] == 0, "axis 2 trusted again")

@@ -246,13 +246,20 @@ void ParityFdi::adopt_memories()
 void ParityFdi::on_command(const FaultCommand& command)
 {
     if (command.action != static_cast<std::uint8_t>(CommandAction::readmit)) return;
+    if (const AxisMask still = monitor_ ? monitor_->contradicted(command.axes) : 0; still != 0)
+        return answer(command, false,
+                      fmt::format("does not readmit what still disagrees with the others: {}", runtime::describe_axes(still)));
     const bool returned = monitor_ && monitor_->readmit(command.axes);
     const bool forgotten = std::exchange(adopting_, false);  // what others remember is older than this order
     absence_ = {};
     const char* outcome = returned ? "readmits" : forgotten ? "takes over no exclusion of" : "has not isolated";
-    const bool done = returned || forgotten;
+    answer(command, returned || forgotten, fmt::format("{} {}", outcome, runtime::describe_axes(command.axes)));
+}
+
+void ParityFdi::answer(const FaultCommand& command, bool done, const std::string& text)
+{
     node_.report(done ? EventCode::command_done : EventCode::command_refused, done ? Severity::info : Severity::warning_low,
-                 identity_of(last_), command.axes, fmt::format("{} {}", outcome, runtime::describe_axes(command.axes)), command.request);
+                 identity_of(last_), command.axes, text, command.request);
 }
 
 }  // namespace quorient::detector

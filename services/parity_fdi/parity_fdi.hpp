@@ -32,6 +32,7 @@ private:
     void on_lane_attitude(const AttitudeState& attitude);
     void on_voted(const VotedAttitude& voted);
     void on_command(const FaultCommand& command);
+    void answer(const FaultCommand& command, bool done, const std::string& text);
     void handle_accepted();
     bool prepare(const ClusterDescription& description);
     tl::expected<fdi::FaultMonitor, std::string> make_method(const ClusterDescription& description) const;

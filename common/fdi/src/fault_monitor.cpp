@@ -82,6 +82,17 @@ void FaultMonitor::adopt(const std::array<std::uint64_t, max_axes>& excluded_fro
     after_change(before);
 }
 
+AxisMask FaultMonitor::contradicted(AxisMask axes) const
+{
+    AxisMask found = 0;
+    for (std::size_t axis = 0; axis < max_axes; ++axis) {
+        if (!has_axis(axes & machine_.isolated(), axis)) continue;
+        const auto expectation = detector_->expectation(axis);
+        if (expectation && !expectation->agrees) found |= axis_bit(axis);
+    }
+    return found;
+}
+
 bool FaultMonitor::readmit(AxisMask axes)
 {
     const AxisMask before = machine_.isolated();

@@ -64,19 +64,23 @@ void FourAxisDetector::assess(const Measurement& measurement, Assessment& assess
     assessment = {};
     assessment.threshold = bound_;
     assessment.outcome = Outcome::healthy;
-    if (!follows(measurement)) start_again();
     AxisMask usable = measurement.valid & four_axes & ~excluded_;
     for (std::size_t axis = 0; axis < axis_count; ++axis)
         if (!std::isfinite(measurement.increment[axis])) usable &= ~axis_bit(axis);
-    if (std::popcount(usable) < 3) return;  // the next frame starts a new history
+    if (std::popcount(usable) < 3) return;  // the next frame finds a gap
 
+    if (!follows(measurement) && !bridge_gap_before(measurement)) start_again();
     started_ = true;
     previous_ = measurement.identity;
     interval_s_ = measurement.interval_s;
     if (holding_) ++held_frames_;
     if (usable == four_axes) {
         judge(frame_of(measurement), assessment);
-    } else if (excluded_ == 0 && !holding_) {
+    } else if (excluded_ != 0) {
+        hear_excluded(measurement);
+    } else if (holding_) {
+        quiet_frames_ = 0;
+    } else {
         Frame frame{.identity = measurement.identity};
         for (std::size_t k = 0; k < axis_count; ++k)
             if (triads_[k].mask() == usable) frame.body = triads_[k].body(Eigen::Map<const Eigen::Vector4d>(measurement.increment.data()));
@@ -84,10 +88,45 @@ void FourAxisDetector::assess(const Measurement& measurement, Assessment& assess
     }
 }
 
+/// All four are heard, three are used.
+void FourAxisDetector::hear_excluded(const Measurement& measurement)
+{
+    const Eigen::Map<const Eigen::Vector4d> z(measurement.increment.data());
+    if ((measurement.valid & four_axes) != four_axes || !z.allFinite()) return;
+    const double parity = parity_vector_.dot(z);
+    const auto axis = std::countr_zero(excluded_);
+    expected_ = z(axis) - parity / parity_vector_(axis);
+    if (std::abs(parity) > bound_) disputed_ = release_frames;
+    else if (disputed_ > 0) --disputed_;
+}
+
+std::optional<Expectation> FourAxisDetector::expectation(std::size_t axis) const
+{
+    if (excluded_ != axis_bit(axis)) return std::nullopt;
+    return Expectation{.value = expected_, .agrees = disputed_ == 0};
+}
+
+bool FourAxisDetector::same_spacing(const Measurement& measurement) const
+{
+    const bool known = started_ && measurement.identity.epoch == previous_.epoch;
+    return known && std::abs(measurement.interval_s - interval_s_) <= interval_tolerance * interval_s_;
+}
+
 bool FourAxisDetector::follows(const Measurement& measurement) const
 {
-    const bool next = started_ && measurement.identity.epoch == previous_.epoch && measurement.identity.sequence == previous_.sequence + 1;
-    return next && std::abs(measurement.interval_s - interval_s_) <= interval_tolerance * interval_s_;
+    return same_spacing(measurement) && measurement.identity.sequence == previous_.sequence + 1;
+}
+
+bool FourAxisDetector::bridge_gap_before(const Measurement& measurement)
+{
+    if (!predicts_over_gaps() || !same_spacing(measurement) || learnt() < warm_up_frames) return false;
+    const std::uint64_t missing = measurement.identity.sequence - previous_.sequence - 1;
+    if (missing > longest_gap) return false;
+    // A hold counts the frames behind its first one.
+    held_frames_ = static_cast<unsigned>(holding_ ? held_frames_ + missing : missing - 1);
+    holding_ = true;
+    quiet_frames_ = 0;
+    return true;
 }
 
 FourAxisDetector::Frame FourAxisDetector::frame_of(const Measurement& measurement) const
@@ -112,9 +151,10 @@ void FourAxisDetector::judge(const Frame& frame, Assessment& assessment)
     const bool suspicious = assessment.statistic > bound_;
     // A weak fault comes and goes around the bound: the history is released only when the parity is back at what is regular.
     quiet_frames_ = assessment.statistic > bound_ / 2 ? 0 : quiet_frames_ + 1;
+    if (holding_ && quiet_frames_ > 0) quiet_[quiet_frames_ - 1] = frame;
     if (suspicious) judge_suspicion(frame, assessment);
     else if (!holding_) learn(frame);
-    else if (quiet_frames_ >= release_frames) start_again();
+    else if (quiet_frames_ == release_frames) release();
     if (frames_ < warm_up_frames) {
         ++frames_;
         assessment.outcome = Outcome::warming_up;
@@ -140,10 +180,18 @@ void FourAxisDetector::start_again()
     forget();
 }
 
+/// What is over leaves its quiet frames behind: a fault that begins now finds a history.
+void FourAxisDetector::release()
+{
+    start_again();
+    for (const Frame& frame : quiet_) learn(frame);
+}
+
 void FourAxisDetector::exclude(AxisMask excluded)
 {
     if ((excluded & four_axes) == excluded_) return;
     excluded_ = excluded & four_axes;
+    disputed_ = 0;
     reset();
 }
 

@@ -530,7 +530,8 @@ TEST(VesselMonitor, isolates_latches_and_readmits_the_papers_faults)
         PaperRun run;
         run.gyro_fault = gyro_fault;
         run.accelerometer_fault = accelerometer_fault;
-        std::array<FaultVerdict, 3> at;  // 19 s, 40 s, 75 s
+        std::array<FaultVerdict, 3> at;            // 19 s, 40 s, 75 s
+        std::array<AxisMask, 2> contradicted = {};  // 25 s, 40 s
         SensorFrame frame;
         run.play([&](double time, const Eigen::VectorXd&, const Eigen::VectorXd& sample, double rudder) {
             frame.interval_s = run.interval_s;
@@ -540,14 +541,18 @@ TEST(VesselMonitor, isolates_latches_and_readmits_the_papers_faults)
                 frame.increment[channel] = sample(static_cast<Eigen::Index>(channel)) * run.interval_s;
             const FaultVerdict verdict = monitor.assess(frame);
             if (frame.sequence == 1900) at[0] = verdict;
+            if (frame.sequence == 2500) contradicted[0] = monitor.contradicted(0b11);
+            if (frame.sequence == 4000) contradicted[1] = monitor.contradicted(0b11);
             if (frame.sequence == 4000) at[1] = verdict;
             if (frame.sequence == 4000) monitor.readmit(0b11);
             if (time < 75.005) at[2] = verdict;
             ++frame.sequence;
         });
-        return at;
+        return std::pair{at, contradicted};
     };
-    const auto faulty = play(0.01, 0.01);
+    const auto [faulty, contradicted] = play(0.01, 0.01);
+    EXPECT_EQ(contradicted[0], 0b10U) << "while its fault lasts";
+    EXPECT_EQ(contradicted[1], 0U) << "ten seconds after it";
     EXPECT_EQ(faulty[0].state, static_cast<std::uint8_t>(VerdictState::healthy));
     EXPECT_EQ(faulty[1].state, static_cast<std::uint8_t>(VerdictState::isolated)) << "latched, ten seconds after the fault ended";
     EXPECT_EQ(faulty[1].isolated_mask, 0b10U);
@@ -556,7 +561,7 @@ TEST(VesselMonitor, isolates_latches_and_readmits_the_papers_faults)
     EXPECT_EQ(faulty[2].isolated_mask, 0b01U);
     EXPECT_NEAR(static_cast<double>(faulty[2].excluded_from[0]), 5000, 2);
 
-    for (const FaultVerdict& verdict : play(0, 0)) EXPECT_EQ(verdict.state, static_cast<std::uint8_t>(VerdictState::healthy));
+    for (const FaultVerdict& verdict : play(0, 0).first) EXPECT_EQ(verdict.state, static_cast<std::uint8_t>(VerdictState::healthy));
 }
 
 TEST(ObserverSettings, are_refused_with_the_reason)

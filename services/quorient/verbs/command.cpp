@@ -74,7 +74,9 @@ void add_readmit(CLI::App& program)
     auto options = std::make_shared<CommandOptions>();
     options->bus.add_to(*verb);
     verb->add_option("--axis", options->axes, "0-based; repeatable")->required()->check(CLI::Range(0, static_cast<int>(max_axes) - 1));
-    verb->footer("Example:\n  quorient readmit --axis 1");
+    verb->footer(
+        "Refused while the other axes still contradict it, where a detector could not name it again (four axes; a vessel's channels).\n"
+        "Example:\n  quorient readmit --axis 1");
     verb->callback([options] {
         FaultCommand command;
         command.action = static_cast<std::uint8_t>(CommandAction::readmit);

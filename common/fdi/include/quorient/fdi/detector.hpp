@@ -54,7 +54,7 @@ struct Assessment {
 /// What a method with a model of the motion makes of an excluded axis in the newest frame.
 struct Expectation {
     double value = 0;     ///< what the axis should have read [unit of the measurement]
-    bool agrees = false;  ///< with the axis trusted again this frame would be a healthy one
+    bool agrees = false;  ///< with the axis trusted again this frame, and as many before as the method looks at, would be healthy
 };
 
 /// One detection method on one cluster. Frames come in order; nothing is allocated per frame.
@@ -71,7 +71,8 @@ public:
     /// How many further simultaneous axis faults can be detected with the axes that are left.
     virtual unsigned detectable_remaining() const = 0;
 
-    /// Of any axis in the newest frame. @returns nothing where the method has no model of the motion, or cannot say in this frame.
+    /// Of any axis in the newest frame. @returns nothing where the method needs no such care (it would name the axis again by itself), or
+    /// cannot say in this frame.
     virtual std::optional<Expectation> expectation(std::size_t) const { return std::nullopt; }
 
     /// Why the newest assessment is `blind` or `warming_up`, where that has a reason of its own; else empty.

@@ -68,6 +68,7 @@ private:
     void attribute(const Frame& frame, Assessment& assessment) override;
     void forget() override { learnt_ = 0; }
     unsigned learnt() const override { return learnt_; }
+    bool predicts_over_gaps() const override { return false; }
     double distance(std::size_t triad) const { return std::abs(prediction_.predicted - triad_modulus_[triad]); }
 
     double margin_;

@@ -41,6 +41,9 @@ public:
     /// Takes over the exclusions of a lane that went on while this detector was away, in sequences of the current epoch.
     void adopt(const std::array<std::uint64_t, max_axes>& excluded_from);
 
+    /// @returns excluded ones of these axes that the method's own model contradicts in the newest frames. It could not name them again.
+    AxisMask contradicted(AxisMask axes) const;
+
     /// By command. @returns false where none of the axes was excluded.
     bool readmit(AxisMask axes);
 

@@ -19,27 +19,34 @@ namespace quorient::fdi {
 /// This base holds what such methods share. A frame is suspicious when |v'z| exceeds
 ///   bound = 2 sum |v_i| quantum_i + z(1 - pfa/2) sqrt(sum v_i^2 sigma_i^2)     (v of unit norm; or settings.tolerance),
 /// twice what carried quantisation can do, plus the noise's quantile. From the first suspicious frame on the history is *held*: it
-/// takes in nothing more until the parity was below half the bound for `release_frames` frames, then it is learnt anew. A frame that does
-/// not follow its predecessor (a gap, another interval) starts the history again.
+/// takes in nothing more until the parity was below half the bound for `release_frames` frames, then it is learnt anew, these first.
+///
+/// A gap of up to `longest_gap` frames is bridged where the method predicts over many frames: the history is held as if the missing frames
+/// had been suspicious, so that a fault which begins with the gap finds a history without it. Any other frame that does not follow its
+/// predecessor (a longer gap, another interval) starts the history again.
 ///
 /// The first `warm_up_frames` frames are warming_up. A fault that is there before any history leaves all four axes as candidates.
 /// A frame with one axis missing cannot contradict itself: it is healthy with statistic 0. With an axis excluded every frame is,
-/// and detectable_remaining() is 0. Allocates nothing per frame.
+/// and detectable_remaining() is 0. An excluded axis that is trusted again while it is still wrong cannot be named, for want of a history
+/// without its fault; so expectation() tells whether the other three agree with it. Allocates nothing per frame.
 class FourAxisDetector : public Detector {
 public:
     static constexpr std::size_t axis_count = 4;
     static constexpr unsigned warm_up_frames = 4;
     static constexpr unsigned release_frames = 8;
+    static constexpr unsigned longest_gap = 64;
 
     void assess(const Measurement& measurement, Assessment& assessment) final;
     void exclude(AxisMask excluded) final;
     unsigned detectable_remaining() const final { return excluded_ == 0 ? 1 : 0; }
+    /// Of an excluded axis: what the other three make of it. It agrees where |v'z| was within the bound for `release_frames` frames, and
+    /// where nothing is known against it.
+    std::optional<Expectation> expectation(std::size_t axis) const final;
     void reset() final;
 
     const Eigen::Vector4d& parity_vector() const { return parity_vector_; }           ///< v, unit norm
     double bound() const { return bound_; }                                           ///< of |v'z| [unit of z]
     const geometry::Triad& triad(std::size_t index) const { return triads_[index]; }  ///< T1..T4, lexicographic
-    bool holding() const { return holding_; }
 
 protected:
     /// The least that every four-axis method needs to know of its cluster.
@@ -78,6 +85,8 @@ protected:
     virtual void forget() = 0;
     /// Frames in the history.
     virtual unsigned learnt() const = 0;
+    /// Whether the history predicts frames that do not follow it at once (Frame::horizon).
+    virtual bool predicts_over_gaps() const = 0;
 
     /// The fault is on the axis that this triad leaves out.
     static AxisMask left_out_by(std::size_t triad) { return axis_bit(axis_count - 1 - triad); }
@@ -86,11 +95,15 @@ protected:
     double resolution() const;
 
 private:
+    bool same_spacing(const Measurement& measurement) const;
     bool follows(const Measurement& measurement) const;
+    bool bridge_gap_before(const Measurement& measurement);
     Frame frame_of(const Measurement& measurement) const;
     void judge(const Frame& frame, Assessment& assessment);
     void judge_suspicion(const Frame& frame, Assessment& assessment);
     void start_again();
+    void release();
+    void hear_excluded(const Measurement& measurement);
 
     std::array<geometry::Triad, axis_count> triads_;
     Eigen::Vector4d parity_vector_;
@@ -103,7 +116,10 @@ private:
     unsigned frames_ = 0;  ///< complete ones since the start, up to warm_up_frames
     bool holding_ = false;
     unsigned held_frames_ = 0;   ///< frames that passed since the history was held
-    unsigned quiet_frames_ = 0;  ///< the latest of them without suspicion
+    unsigned quiet_frames_ = 0;  ///< the latest of them, one after another, without suspicion
+    std::array<Frame, release_frames> quiet_;
+    unsigned disputed_ = 0;  ///< frames to come until an excluded axis that agrees in all of them counts as one that agrees
+    double expected_ = 0;    ///< of the excluded axis, by the other three [unit of z]
 };
 
 }  // namespace quorient::fdi

@@ -73,6 +73,7 @@ private:
     void attribute(const Frame& frame, Assessment& assessment) override;
     void forget() override;
     unsigned learnt() const override { return static_cast<unsigned>(size_); }
+    bool predicts_over_gaps() const override { return true; }
 
     const Eigen::Vector3d& past(std::size_t age) const { return body_[(next_ + history_length - 1 - age) % history_length]; }
     double parity_sum(std::size_t from_age, std::size_t frames) const;
