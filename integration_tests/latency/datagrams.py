@@ -29,9 +29,12 @@ def count(commands, rate_hz, environment):
     }
     try:
         time.sleep(START_S)
-        before, usage = udp_counters(), run.Usage(processes)
+        before, usage, begin_s = udp_counters(), run.Usage(processes), time.monotonic()
+        usage.look()
         time.sleep(COUNT_S)
-        after, used = udp_counters(), usage.end()
+        after = udp_counters()
+        usage.look()
+        used = usage.between(begin_s, time.monotonic())
     finally:
         for process in processes.values():
             process.terminate()

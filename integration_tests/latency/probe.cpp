@@ -6,10 +6,12 @@
 #include "quorient/messages/stamps.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <csignal>
 #include <iostream>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
@@ -58,6 +60,8 @@ nlohmann::json report(const std::vector<Record>& records, std::uint64_t skipped,
         }
         result["hops"][hop.name] = latency::quantiles_us(std::move(samples));
     }
+    std::int64_t begin_ns = std::numeric_limits<std::int64_t>::max();
+    std::int64_t end_ns = 0;
     // Frames are judged per unit, over both voters: our own subscribers merge them.
     std::map<std::uint32_t, std::set<std::uint64_t>> sequences;
     std::set<std::array<std::uint64_t, 3>> seen;
@@ -65,6 +69,8 @@ nlohmann::json report(const std::vector<Record>& records, std::uint64_t skipped,
     std::uint64_t late = 0;
     for (const auto& record : records) {
         if (record.sequence < skipped) continue;
+        begin_ns = std::min(begin_ns, record.arrival_ns);
+        end_ns = std::max(end_ns, record.arrival_ns);
         sequences[record.unit].insert(record.sequence);
         duplicates += seen.insert({record.unit, record.voter, record.sequence}).second ? 0 : 1;
         const auto age = record.stamp_ns[static_cast<std::size_t>(Hop::voter_out)] - record.stamp_ns[static_cast<std::size_t>(Hop::sensor)];
@@ -84,6 +90,8 @@ nlohmann::json report(const std::vector<Record>& records, std::uint64_t skipped,
     result["duplicates"] = duplicates;
     result["late"] = late;
     result["sent"] = sent;
+    result["begin_s"] = static_cast<double>(begin_ns) * 1e-9;
+    result["end_s"] = static_cast<double>(end_ns) * 1e-9;
     return result;
 }
 

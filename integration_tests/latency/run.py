@@ -26,7 +26,9 @@ BIN = pathlib.Path(os.environ.get("QUORIENT_BIN", ROOT / "build/release/bin"))
 PAGE_MIB = os.sysconf("SC_PAGE_SIZE") / 2**20
 PING_PATIENCE_S = 60  # all rounds of one pair of processes; they take some seconds
 START_PATIENCE_S = 15
-UNITS_SECONDS = 6  # many processes start slowly, and their CPU time counts when all run
+UNITS_SECONDS = 6  # many processes start slowly
+LADDER_SECONDS = 8  # of which the probe may miss two
+SHORTEST_LOOK_S, LOOK_PER_PROCESS_S = 0.25, 0.02  # looking takes 0.2 ms per process
 DOMAINS = 16  # used in turns: the one before may still be saying goodbye
 FLOORS = ("floor", "floor_that_waits")
 PROGRAMS = ("quorient-latency-graph", "quorient-latency-probe", "quorient-latency-ping")
@@ -72,12 +74,11 @@ class Roudi:
 
 
 class Usage:
-    """CPU and memory of processes between two looks."""
+    """CPU and memory of processes, looked at from time to time; what lies between two looks is told for a time of one's own."""
 
     def __init__(self, processes):
         self.processes = processes
-        self.begin = self.look()
-        self.begin_s = time.monotonic()
+        self.looks = []
 
     def look(self):
         found = {}
@@ -89,13 +90,17 @@ class Usage:
             except (FileNotFoundError, ProcessLookupError):
                 continue
             found[name] = (sum(threads) * 1e-9, pages * PAGE_MIB)
-        return found
+        self.looks.append((time.monotonic(), found))
 
-    def end(self):
-        seconds = time.monotonic() - self.begin_s
+    def between(self, begin_s, end_s):
+        """@returns {process: ...} from the first look to the last one in this time; empty where there are not two."""
+        looks = [look for look in self.looks if begin_s <= look[0] <= end_s]
+        if len(looks) < 2:
+            return {}
+        (first_s, first), (last_s, last) = looks[0], looks[-1]
         return {
-            name: {"cpu_percent": 100 * (cpu - self.begin[name][0]) / seconds, "rss_mib": rss}
-            for name, (cpu, rss) in self.look().items() if name in self.begin
+            name: {"cpu_percent": 100 * (cpu - first[name][0]) / (last_s - first_s), "rss_mib": rss}
+            for name, (cpu, rss) in last.items() if name in first
         }
 
 
@@ -173,13 +178,14 @@ class Runner:
         sensors = [process for name, process in processes.items() if name.endswith("sensor")]
         units = case.get("units", 1)
         heard = 1 if case.get("own_domains") else units  # by the probe, in its domain
+        usage = Usage(processes)
         try:
-            time.sleep(self.options.settle + (0.02 if case.get("own_domains") else 0.2) * units + 0.2 * seconds)
-            usage = Usage(processes)
-            time.sleep(0.5 * seconds)
-            used = usage.end()
-            for sensor in sensors:
-                sensor.wait(timeout=START_PATIENCE_S + seconds)
+            deadline = time.monotonic() + START_PATIENCE_S + seconds
+            while any(sensor.poll() is None for sensor in sensors):
+                if time.monotonic() > deadline:
+                    raise subprocess.TimeoutExpired("the sensor", START_PATIENCE_S + seconds)
+                usage.look()
+                time.sleep(max(SHORTEST_LOOK_S, seconds / 20, LOOK_PER_PROCESS_S * len(processes)))
             time.sleep(0.1)
         finally:
             for process in [*processes.values(), probe]:
@@ -192,9 +198,9 @@ class Runner:
                     process.kill()
                     process.wait()
         report = json.loads(probe.stdout.read())
-        if "before_the_probe" not in report:
+        if "begin_s" not in report:
             ask_for_build("quorient-latency-probe is of an earlier build")
-        report["processes"] = used
+        report["processes"] = usage.between(report["begin_s"], report["end_s"])
         whole = int(round(seconds * case["rate_hz"])) * heard
         report["expected"] = whole - skip * heard - report["before_the_probe"]
         report["never_sent"] = whole - report["sent"] if report["sent"] else 0
@@ -295,7 +301,7 @@ def sustained(runner):
         print(f"{name}: {table.lost(minute)} of {minute['expected']} lost in {runner.options.minute} s", file=sys.stderr, flush=True)
         ladder = []
         for rate in (1500, 2000, 3000, 4000, 6000):
-            report = runner.once("ours", {**case, "rate_hz": rate}, runner.options.seconds)
+            report = runner.once("ours", {**case, "rate_hz": rate}, min(LADDER_SECONDS, runner.options.minute))
             if not report:
                 break
             ladder.append({"rate_hz": rate, "report": report})
@@ -349,7 +355,6 @@ def parse():
     parser.add_argument("--seconds", type=float, default=2.5, help="of frames in each run")
     parser.add_argument("--rates", default=[200, 1000], type=rates,
                         help="frames per second of the pipelines by transport, Hz: 200,1000")
-    parser.add_argument("--settle", type=float, default=1.2, help="seconds that a pipeline takes to start, before its CPU time counts")
     parser.add_argument("--minute", type=float, default=60, help="seconds of the long run at 1 kHz")
     parser.add_argument("--pings", type=int, default=1000, help="of each path in each round")
     parser.add_argument("--limit", type=float, default=20, help="minutes after which what is left is left out, and named")
