@@ -121,9 +121,9 @@ bool FourAxisDetector::bridge_gap_before(const Measurement& measurement)
 {
     if (!predicts_over_gaps() || !same_spacing(measurement) || learnt() < warm_up_frames) return false;
     const std::uint64_t missing = measurement.identity.sequence - previous_.sequence - 1;
-    if (missing > longest_gap) return false;
-    // A hold counts the frames behind its first one.
-    held_frames_ = static_cast<unsigned>(holding_ ? held_frames_ + missing : missing - 1);
+    const std::uint64_t held = holding_ ? held_frames_ + missing : missing - 1;  // a hold counts the frames behind its first one
+    if (held >= longest_gap) return false;
+    held_frames_ = static_cast<unsigned>(held);
     holding_ = true;
     quiet_frames_ = 0;
     return true;

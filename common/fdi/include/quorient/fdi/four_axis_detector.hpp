@@ -22,8 +22,8 @@ namespace quorient::fdi {
 /// takes in nothing more until the parity was below half the bound for `release_frames` frames, then it is learnt anew, these first.
 ///
 /// A gap of up to `longest_gap` frames is bridged where the method predicts over many frames: the history is held as if the missing frames
-/// had been suspicious, so that a fault which begins with the gap finds a history without it. Any other frame that does not follow its
-/// predecessor (a longer gap, another interval) starts the history again.
+/// had been suspicious, so that a fault which begins with the gap finds a history without it; several, where all lie within as many frames
+/// behind that history. Any other frame that does not follow its predecessor (a longer gap, another interval) starts the history again.
 ///
 /// The first `warm_up_frames` frames are warming_up. A fault that is there before any history leaves all four axes as candidates.
 /// A frame with one axis missing cannot contradict itself: it is healthy with statistic 0. With an axis excluded every frame is,
