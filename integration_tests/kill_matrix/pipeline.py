@@ -23,6 +23,13 @@ class NotInTime(Exception):
     pass
 
 
+def at_least_once(text):
+    """For argparse."""
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"'{text}': a whole number from 1 on is needed")
+    return int(text)
+
+
 def rate_between(least_hz, most_hz=1000):
     """For argparse: whole frames per second within what a system under test can be judged at."""
     def parse(text):

@@ -7,7 +7,7 @@ import time
 from typing import NamedTuple
 
 from judge import judge
-from pipeline import ALL_LANES, RATE_HZ, NotInTime, Pipeline, ask_for_priority
+from pipeline import ALL_LANES, RATE_HZ, NotInTime, Pipeline, ask_for_priority, at_least_once
 from streams import COASTING, HELD, LOST, SINGLE
 
 FAULT_S = 1.5
@@ -191,7 +191,7 @@ def main():
     parser.add_argument("--all", action="store_true", help="the whole matrix")
     parser.add_argument("--list", action="store_true")
     parser.add_argument("--logs", action="store_true", help="show the logs of the processes of a cell that does not hold")
-    parser.add_argument("--attempts", type=int, default=2)
+    parser.add_argument("--attempts", type=at_least_once, default=2)
     options = parser.parse_args()
     if options.list:
         print("\n".join(BY_NAME))

@@ -10,7 +10,7 @@ from hosts import Hosts, not_permitted
 from load import Load
 from spread_pipeline import Place, SpreadPipeline  # first of these: it tells where the kill matrix is
 from judge import Figures, judge
-from pipeline import ALL_LANES, RATE_HZ, NotInTime, ask_for_priority, rate_between
+from pipeline import ALL_LANES, RATE_HZ, NotInTime, ask_for_priority, at_least_once, rate_between
 from streams import DEGRADED, HELD, SINGLE
 
 FAULTY_AXIS = 1
@@ -216,7 +216,7 @@ def main():
     parser.add_argument("--all", action="store_true", help="all cells")
     parser.add_argument("--list", action="store_true")
     parser.add_argument("--logs", action="store_true", help="show the logs of the processes of a cell that does not hold")
-    parser.add_argument("--attempts", type=int, default=2)
+    parser.add_argument("--attempts", type=at_least_once, default=2)
     parser.add_argument("--rate", type=rate_between(20), metavar="HZ", default=RATE_HZ, help="of the system")
     options = parser.parse_args()
     if options.list:

@@ -10,7 +10,9 @@ import threading
 import time
 
 NAP_S = 0.005
-STALL_S = 0.02  # a lane is silent after five intervals of 5 ms; it works for some of each
+# A lane that does not run for five intervals of 5 ms is silent. On a quiet machine with two processors the longest was 3 to 5 ms, beside tests
+# of a whole pipeline 6 to 16 ms.
+STALL_S = 0.02
 
 
 class Witness:

@@ -247,13 +247,12 @@ void ParityFdi::on_command(const FaultCommand& command)
 {
     if (command.action != static_cast<std::uint8_t>(CommandAction::readmit)) return;
     if (const AxisMask still = monitor_ ? monitor_->contradicted(command.axes) : 0; still != 0)
-        return answer(command, false,
-                      fmt::format("does not readmit what still disagrees with the others: {}", runtime::describe_axes(still)));
+        return answer(command, false, fmt::format("does not readmit what still disagrees with the others: {}", describe(still)));
     const bool returned = monitor_ && monitor_->readmit(command.axes);
     const bool forgotten = std::exchange(adopting_, false);  // what others remember is older than this order
     absence_ = {};
     const char* outcome = returned ? "readmits" : forgotten ? "takes over no exclusion of" : "has not isolated";
-    answer(command, returned || forgotten, fmt::format("{} {}", outcome, runtime::describe_axes(command.axes)));
+    answer(command, returned || forgotten, fmt::format("{} {}", outcome, describe(command.axes)));
 }
 
 void ParityFdi::answer(const FaultCommand& command, bool done, const std::string& text)

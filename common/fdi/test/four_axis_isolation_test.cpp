@@ -185,6 +185,20 @@ TEST(FourAxisIsolation, the_vector_predictor_is_silent_about_gaps_and_names_what
     }
 }
 
+/// Four frames on either side of a gap are no eight in a row: what was known before the first gap is still what predicts.
+TEST(FourAxisIsolation, the_vector_predictor_does_not_learn_from_frames_on_both_sides_of_a_gap)
+{
+    Unit unit("vector", 9);
+    const Scenario scenario{.faulty = 1, .from = 1600};
+    for (std::uint64_t sequence = 0; sequence <= scenario.from; ++sequence) {
+        const SensorFrame measured = unit.frame(scenario, sequence);
+        const bool lost = (sequence >= 1544 && sequence < 1552) || (sequence >= 1556 && sequence < 1596);
+        if (!lost) unit.monitor().assess(measured);
+    }
+    EXPECT_EQ(unit.monitor().assessment().isolated, 0b0010U);
+    EXPECT_EQ(unit.monitor().assessment().onset, 1544U);
+}
+
 /// With a history that every gap ends, 503, 292 and 141 of these 600 are named; with one that is held through any number of gaps, 575, 446,
 /// 227.
 TEST(FourAxisIsolation, the_vector_predictor_names_faults_while_frames_are_lost_at_random)

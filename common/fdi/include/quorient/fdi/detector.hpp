@@ -71,8 +71,7 @@ public:
     /// How many further simultaneous axis faults can be detected with the axes that are left.
     virtual unsigned detectable_remaining() const = 0;
 
-    /// Of any axis in the newest frame. @returns nothing where the method needs no such care (it would name the axis again by itself), or
-    /// cannot say in this frame.
+    /// Of any axis in the newest frame. @returns nothing where the method keeps no watch on excluded axes, or cannot say in this frame.
     virtual std::optional<Expectation> expectation(std::size_t) const { return std::nullopt; }
 
     /// Why the newest assessment is `blind` or `warming_up`, where that has a reason of its own; else empty.

@@ -41,7 +41,8 @@ public:
     /// Takes over the exclusions of a lane that went on while this detector was away, in sequences of the current epoch.
     void adopt(const std::array<std::uint64_t, max_axes>& excluded_from);
 
-    /// @returns excluded ones of these axes that the method's own model contradicts in the newest frames. It could not name them again.
+    /// @returns those of these axes that are excluded and disagree with the others still (Detector::expectation): a method that keeps watch
+    /// on them may be unable to name them again. Others are never listed.
     AxisMask contradicted(AxisMask axes) const;
 
     /// By command. @returns false where none of the axes was excluded.
