@@ -38,8 +38,8 @@ std::string noise_text(const CalibratedCluster& cluster)
     std::string text = fmt::format("{{along_s: {:.17g}, across_s: {:.17g}, level: {:.17g}", cluster.jitter_along_s, cluster.jitter_across_s,
                                    cluster.motion_level);
     if (const auto& gated = cluster.gated)
-        text += fmt::format(", gated: {{along_s: {:.17g}, across_s: {:.17g}, axes: {:.17g}, rate: {:.17g}}}", gated->along_s,
-                            gated->across_s, gated->axes, gated->rate);
+        text += fmt::format(", gated: {{along_s: {:.17g}, across_s: {:.17g}, axes: {:.17g}, rate: {:.17g}}}", gated->jitter_along_s,
+                            gated->jitter_across_s, gated->axes_error, gated->rate_error);
     return text + "}";
 }
 
@@ -143,11 +143,11 @@ void read_noise(Reading& reading, const YAML::Node& noise, CalibratedCluster& cl
     reading.number(noise, "level", cluster.motion_level, 0, false);
     const YAML::Node gated = noise["gated"];
     if (!gated || !reading.is_map_of(gated, gated_keys)) return;
-    GatedTerms& terms = cluster.gated.emplace();
-    reading.number(gated, "along_s", terms.along_s, 0);
-    reading.number(gated, "across_s", terms.across_s, 0);
-    reading.number(gated, "axes", terms.axes, 0);
-    reading.number(gated, "rate", terms.rate, 0);
+    fdi::GatedNoise& terms = cluster.gated.emplace();
+    reading.number(gated, "along_s", terms.jitter_along_s, 0);
+    reading.number(gated, "across_s", terms.jitter_across_s, 0);
+    reading.number(gated, "axes", terms.axes_error, 0);
+    reading.number(gated, "rate", terms.rate_error, 0);
 }
 
 void read_axis(Reading& reading, const YAML::Node& node, std::size_t axis, CalibratedCluster& cluster)

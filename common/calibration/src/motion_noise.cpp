@@ -44,10 +44,10 @@ struct NoiseEquations {
         }
     }
 
-    MotionNoise solve() const
+    SamplingJitter solve() const
     {
         const Eigen::Vector2d squares = normal.fullPivLu().solve(right);
-        MotionNoise noise;
+        SamplingJitter noise;
         noise.along_s = std::sqrt(std::max(0.0, squares(0)));
         noise.across_s = std::sqrt(std::max(0.0, squares(1)));
         return noise;
@@ -114,7 +114,7 @@ MotionFigures motion_figures(Samples samples, const std::vector<AxisVector>& rat
         figures.noise.largest_acceleration_rad_s2 = std::max(figures.noise.largest_acceleration_rad_s2, size);
     }
     if (figures.noise.samples > 0) {
-        const MotionNoise solved = equations.solve();
+        const SamplingJitter solved = equations.solve();
         figures.noise.along_s = solved.along_s;
         figures.noise.across_s = solved.across_s;
     }

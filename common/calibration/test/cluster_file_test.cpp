@@ -26,7 +26,7 @@ CalibratedCluster some_cluster()
     }
     cluster.jitter_along_s = 1.0 / 3e3;
     cluster.motion_level = 4.0 / 3;
-    cluster.gated = {.along_s = 1.0 / 7e3, .across_s = 1.0 / 9e3, .axes = 1e-3 / 3, .rate = 1e-4 / 3};
+    cluster.gated = {.jitter_along_s = 1.0 / 7e3, .jitter_across_s = 1.0 / 9e3, .axes_error = 1e-3 / 3, .rate_error = 1e-4 / 3};
     cluster.origin = "log \"one\".bin";
     return cluster;
 }

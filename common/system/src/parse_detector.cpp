@@ -3,7 +3,6 @@
 #include "quorient/fdi/fault_monitor.hpp"
 #include "quorient/fdi/make_detector.hpp"
 #include "quorient/fdi/observer_detector.hpp"
-#include "quorient/system/calibrated_noise.hpp"
 #include "quorient/system/plant.hpp"
 
 #include <fmt/format.h>
@@ -30,7 +29,7 @@ void parse_verdict(Section& section, fdi::VerdictSettings& verdict)
 void take_calibration(const calibration::CalibratedCluster& cluster, fdi::DetectorSettings& detection)
 {
     if (cluster.motion_level > 0) detection.motion_noise = cluster.motion_level;
-    detection.gated_noise = gated_noise_of(cluster);
+    detection.gated_noise = cluster.gated;
 }
 
 void parse_detection(Section section, const System& system, DetectorProcess& detector)

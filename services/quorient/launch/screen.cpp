@@ -15,7 +15,7 @@ constexpr std::size_t events_shown = 6;
 
 }  // namespace
 
-Screen::Screen(const system::System& system, const live::RunObserver& run, bool quiet)
+Screen::Screen(const system::System& system, const evaluation::RunObserver& run, bool quiet)
     : system_(system), run_(run), quiet_(quiet), terminal_(::isatty(STDOUT_FILENO) == 1)
 {
 }

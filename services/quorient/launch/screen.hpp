@@ -1,6 +1,6 @@
 #pragma once
 
-#include "../live/run_observer.hpp"
+#include "quorient/evaluation/run_observer.hpp"
 #include "processes.hpp"
 #include "quorient/messages/health_event.hpp"
 
@@ -12,7 +12,7 @@ namespace quorient::launch {
 /// What a user sees of a running system: on a terminal a table that is drawn anew, elsewhere one line per event.
 class Screen {
 public:
-    Screen(const system::System& system, const live::RunObserver& run, bool quiet);
+    Screen(const system::System& system, const evaluation::RunObserver& run, bool quiet);
 
     void on_event(const HealthEvent& event);
 
@@ -23,7 +23,7 @@ private:
     std::string line_of(const HealthEvent& event) const;
 
     const system::System& system_;
-    const live::RunObserver& run_;
+    const evaluation::RunObserver& run_;
     bool quiet_;
     bool terminal_;
     int drawn_lines_ = 0;

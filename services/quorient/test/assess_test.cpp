@@ -1,3 +1,4 @@
+#include "run_verb.hpp"
 #include "verbs.hpp"
 
 #include <gmock/gmock.h>
@@ -16,10 +17,7 @@ using testing::HasSubstr;
 
 constexpr const char* two_faults = "-393.04,1075.35,-612.73,-593.11,1254.79,-761.19\n";  // paper 000's example, misprints corrected
 
-struct Output {
-    int exit_code = 0;
-    std::string out, error;
-
+struct Printed : cli::Output {
     std::vector<ordered_json> rows() const
     {
         std::vector<ordered_json> rows;
@@ -32,24 +30,12 @@ struct Output {
 class AssessVerb : public testing::Test {
 protected:
     /// Runs the verb on these rows.
-    Output run(const std::string& arguments, const std::string& rows)
+    Printed run(const std::string& arguments, const std::string& rows)
     {
         std::ofstream(path_) << rows;
-        CLI::App program;
+        Program program{"quorient", ""};
         add_assess(program);
-        Output result;
-        testing::internal::CaptureStdout();
-        testing::internal::CaptureStderr();
-        try {
-            program.parse("assess " + arguments + " " + path_.string(), false);
-        } catch (const CLI::RuntimeError& error) {
-            result.exit_code = error.get_exit_code();
-        } catch (const CLI::ParseError&) {
-            result.exit_code = 2;
-        }
-        result.out = testing::internal::GetCapturedStdout();
-        result.error = testing::internal::GetCapturedStderr();
-        return result;
+    return Printed{run_program(program, "assess " + arguments + " " + path_.string())};
     }
     ~AssessVerb() override { std::filesystem::remove(path_); }
 
@@ -142,7 +128,7 @@ TEST_F(AssessVerb, exits_1_where_an_outcome_is_not_the_one_to_check)
 TEST_F(AssessVerb, explains_bad_usage_and_exits_2)
 {
     const auto explanation = [this](const std::string& arguments, const std::string& rows = "0,0,0,0,0,0\n") {
-        const Output result = run(arguments, rows);
+        const Printed result = run(arguments, rows);
         EXPECT_EQ(result.exit_code, 2) << arguments;
         return result.error;
     };

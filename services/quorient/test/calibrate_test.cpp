@@ -1,4 +1,5 @@
 #include "svg_plot.hpp"
+#include "run_verb.hpp"
 #include "verbs.hpp"
 
 #include <gmock/gmock.h>
@@ -25,29 +26,12 @@ std::filesystem::path data_dir()
     return given != nullptr ? std::filesystem::path(given) : std::filesystem::path(QUORIENT_SOURCE_DIR) / ".." / "shared" / "data";
 }
 
-struct Output {
-    int exit_code = 0;
-    std::string out, error;
-};
-
 Output run(const std::string& arguments)
 {
-    CLI::App program;
+    Program program{"quorient", ""};
     add_calibrate(program);
     add_simulate(program);
-    Output result;
-    testing::internal::CaptureStdout();
-    testing::internal::CaptureStderr();
-    try {
-        program.parse(arguments, false);
-    } catch (const CLI::RuntimeError& error) {
-        result.exit_code = error.get_exit_code();
-    } catch (const CLI::ParseError& error) {
-        result.exit_code = program.exit(error);
-    }
-    result.out = testing::internal::GetCapturedStdout();
-    result.error = testing::internal::GetCapturedStderr();
-    return result;
+    return run_program(program, arguments);
 }
 
 class CalibrateVerb : public testing::Test {

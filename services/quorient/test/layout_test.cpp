@@ -1,3 +1,4 @@
+#include "run_verb.hpp"
 #include "verbs.hpp"
 
 #include <gmock/gmock.h>
@@ -13,30 +14,15 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-struct Run {
-    int exit_code = 0;
-    std::string out, error;
-
+struct Run : cli::Output {
     json object() const { return json::parse(out); }
 };
 
 Run run(const std::string& arguments)
 {
-    CLI::App program;
+    Program program{"quorient", ""};
     add_layout(program);
-    Run result;
-    testing::internal::CaptureStdout();
-    testing::internal::CaptureStderr();
-    try {
-        program.parse("layout " + arguments, false);
-    } catch (const CLI::RuntimeError& error) {
-        result.exit_code = error.get_exit_code();
-    } catch (const CLI::ParseError& error) {
-        result.exit_code = 2;
-    }
-    result.out = testing::internal::GetCapturedStdout();
-    result.error = testing::internal::GetCapturedStderr();
-    return result;
+    return Run{run_program(program, "layout " + arguments)};
 }
 
 class AxesFile : public testing::Test {

@@ -1,3 +1,4 @@
+#include "run_verb.hpp"
 #include "verbs.hpp"
 
 #include <gmock/gmock.h>
@@ -14,10 +15,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-struct Run {
-    int exit_code = 0;
-    std::string out, error;
-};
+using Run = Output;
 
 // Runs the verb on a file with these rows.
 Run run(const std::string& options, const std::string& rows)
@@ -25,22 +23,11 @@ Run run(const std::string& options, const std::string& rows)
     const auto path = std::filesystem::path(testing::TempDir()) /
                       (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_rows.csv");
     std::ofstream(path) << rows;
-    CLI::App program;
+    Program program{"quorient", ""};
     add_propagate(program);
-    Run result;
-    testing::internal::CaptureStdout();
-    testing::internal::CaptureStderr();
-    try {
-        program.parse("propagate " + options + " " + path.string(), false);
-    } catch (const CLI::RuntimeError& error) {
-        result.exit_code = error.get_exit_code();
-    } catch (const CLI::ParseError&) {
-        result.exit_code = 2;
-    }
-    result.out = testing::internal::GetCapturedStdout();
-    result.error = testing::internal::GetCapturedStderr();
+    const auto output = run_program(program, "propagate " + options + " " + path.string());
     std::filesystem::remove(path);
-    return result;
+    return Run{output};
 }
 
 std::vector<double> last_row(const std::string& csv)

@@ -1,5 +1,6 @@
 #include "quorient/geometry/layouts.hpp"
 #include "quorient/simulation/motion.hpp"
+#include "run_verb.hpp"
 #include "verbs.hpp"
 
 #include <gmock/gmock.h>
@@ -14,10 +15,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-struct Output {
-    int exit_code = 0;
-    std::string out, error;
-
+struct Printed : cli::Output {
     std::vector<std::string> lines() const
     {
         std::vector<std::string> all;
@@ -27,23 +25,11 @@ struct Output {
     }
 };
 
-Output run(const std::string& arguments)
+Printed run(const std::string& arguments)
 {
-    CLI::App program;
+    Program program{"quorient", ""};
     add_simulate(program);
-    Output result;
-    testing::internal::CaptureStdout();
-    testing::internal::CaptureStderr();
-    try {
-        program.parse("simulate " + arguments, false);
-    } catch (const CLI::RuntimeError& error) {
-        result.exit_code = error.get_exit_code();
-    } catch (const CLI::ParseError& error) {
-        result.exit_code = program.exit(error);
-    }
-    result.out = testing::internal::GetCapturedStdout();
-    result.error = testing::internal::GetCapturedStderr();
-    return result;
+    return Printed{run_program(program, "simulate " + arguments)};
 }
 
 std::vector<double> numbers(const std::string& line)
@@ -56,7 +42,7 @@ std::vector<double> numbers(const std::string& line)
 
 TEST(SimulateVerb, writes_one_row_per_interval_with_the_truth_at_its_end)
 {
-    const Output result = run("coning --layout cone-4 --interval 0.1 --duration 2");
+    const Printed result = run("coning --layout cone-4 --interval 0.1 --duration 2");
     EXPECT_EQ(result.exit_code, 0);
     const auto lines = result.lines();
     ASSERT_EQ(lines.size(), 21U);
@@ -76,7 +62,7 @@ TEST(SimulateVerb, writes_one_row_per_interval_with_the_truth_at_its_end)
 
 TEST(SimulateVerb, prints_the_state_at_one_time)
 {
-    const Output result = run("coning --at 10 --k2 0.084 --k3 0.05 --interval 0.1 --json");
+    const Printed result = run("coning --at 10 --k2 0.084 --k3 0.05 --interval 0.1 --json");
     const json state = json::parse(result.out);
     EXPECT_NEAR(state["rate"][1].get<double>(), 0.084 * std::cos(0.5), 1e-16);
     const auto body = state["body_increment"];
@@ -116,7 +102,7 @@ TEST(SimulateVerb, carries_the_remainder_where_a_quantum_is_given)
 TEST(SimulateVerb, explains_bad_usage_with_exit_code_2)
 {
     const auto refused = [](const std::string& arguments) {
-        const Output result = run(arguments);
+        const Printed result = run(arguments);
         EXPECT_NE(result.exit_code, 0) << arguments;
         EXPECT_TRUE(result.out.empty()) << arguments;
         return result.error;

@@ -1,3 +1,4 @@
+#include "run_verb.hpp"
 #include "verbs.hpp"
 
 #include <gmock/gmock.h>
@@ -13,30 +14,11 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-struct Output {
-    int exit_code = 0;
-    std::string out, error;
-};
-
 Output run(const std::string& arguments)
 {
-    CLI::App program;
+    Program program{"quorient", ""};
     add_vessel(program);
-    Output result;
-    testing::internal::CaptureStdout();
-    testing::internal::CaptureStderr();
-    try {
-        program.parse("vessel " + arguments, false);
-    } catch (const CLI::RuntimeError& error) {
-        result.exit_code = error.get_exit_code();
-    } catch (const CLI::ParseError& error) {
-        result.exit_code = program.exit(error);
-    }
-    std::cout.flush();
-    std::fflush(stdout);
-    result.out = testing::internal::GetCapturedStdout();
-    result.error = testing::internal::GetCapturedStderr();
-    return result;
+    return run_program(program, "vessel " + arguments);
 }
 
 std::vector<json> rows(const std::string& arguments)

@@ -1,8 +1,8 @@
 #include "assess_methods.hpp"
-#include "cluster_input.hpp"
-#include "csv_input.hpp"
-#include "failure.hpp"
-#include "json_output.hpp"
+#include "cli/cluster_input.hpp"
+#include "cli/csv_input.hpp"
+#include "cli/program.hpp"
+#include "cli/json_output.hpp"
 #include "verbs.hpp"
 
 #include <fmt/format.h>
@@ -26,6 +26,7 @@ struct AssessOptions {
     std::vector<double> direction;
     std::string file = "-";
     std::string check;
+    bool json = false;  ///< the only format
 };
 
 std::string_view name_of(fdi::Outcome outcome)
@@ -40,11 +41,11 @@ const AssessMethod& method_of(const AssessOptions& options)
 }
 
 /// An option that the method would ignore is a mistake, not a wish.
-void refuse_foreign_options(const CLI::App& verb, const AssessMethod& method)
+void refuse_foreign_options(const Verb& verb, const AssessMethod& method)
 {
     for (const AssessMethod& other : assess_methods())
         for (const std::string& option : other.options)
-            if (verb.count(option) > 0 && std::find(method.options.begin(), method.options.end(), option) == method.options.end())
+            if (verb.given(option) && std::find(method.options.begin(), method.options.end(), option) == method.options.end())
                 fail(fmt::format("{} means nothing to method {}, which takes {}", option, method.name, fmt::join(method.options, ", ")));
 }
 
@@ -75,7 +76,7 @@ Json row_json(std::size_t row, const fdi::Assessment& assessment, std::size_t ax
     return object;
 }
 
-void run(const AssessOptions& options, const CLI::App& verb)
+void run(const AssessOptions& options, const Verb& verb)
 {
     refuse_foreign_options(verb, method_of(options));
     if (options.choice.name().empty()) fail("which axes? --layout NAME of the catalogue (quorient layout lists it), or --axes FILE");
@@ -100,41 +101,39 @@ void run(const AssessOptions& options, const CLI::App& verb)
         fmt::print("{}\n", dump(object));
         as_expected = as_expected && (options.check.empty() || options.check == name_of(assessment.outcome));
     }
-    if (!as_expected) throw CLI::RuntimeError(1);
+    if (!as_expected) throw Exit{1};
 }
 
-void add_method_options(CLI::App& verb, AssessOptions& options)
+void add_method_options(Verb& verb, AssessOptions& options)
 {
     fdi::DetectorSettings& settings = options.settings;
     std::vector<std::string> names;
     for (const AssessMethod& method : assess_methods()) names.push_back(method.name);
-    verb.add_option("--method", settings.method, "how to judge a row")->required()->check(CLI::IsMember(names));
-    verb.add_option("--tolerance", settings.tolerance,
+    verb.option("--method", settings.method, "how to judge a row").required().one_of(names);
+    verb.option("--tolerance", settings.tolerance,
                     "invariants: of |v'z|, v of unit norm; voting: of a difference's norm; mean: of "
                     "sqrt(SSE); extrapolation, vector: of |v'z|");
-    verb.add_option("--sigma", settings.sigma, "standard deviation of one axis's noise");
-    verb.add_option("--pfa", settings.pfa, "probability of a false alarm per row (default 1e-6)");
-    verb.add_option("--bound", settings.bound, "largest regular error of one axis");
-    verb.add_option("--threshold", settings.threshold,
+    verb.option("--sigma", settings.sigma, "standard deviation of one axis's noise");
+    verb.option("--pfa", settings.pfa, "probability of a false alarm per row (default 1e-6)");
+    verb.option("--bound", settings.bound, "largest regular error of one axis");
+    verb.option("--threshold", settings.threshold,
                     "A: errors beyond it are faults (default: the least with which regular errors are never undecided)");
-    verb.add_option("--max-faults", settings.max_faults,
+    verb.option("--max-faults", settings.max_faults,
                     "most simultaneous faults that are looked for (default 2, as far as the axes allow)");
-    verb.add_option("--margin", settings.margin,
+    verb.option("--margin", settings.margin,
                     "explanations that differ by less are ambiguous, in units of sigma^2 (default: subset 9, else 0)");
-    verb.add_option("--doubt", settings.doubt,
+    verb.option("--doubt", settings.doubt,
                     "subset: share of right isolations held back as suspect, to rule out one more small fault (default none)");
-    verb.add_option("--direction", options.direction, "guaranteed: also the interval along this body vector, as in 0,0,1")
-        ->delimiter(',')
-        ->allow_extra_args(false);
-    verb.add_flag("--instruments", settings.instruments, "subset: a fault takes a whole instrument");
-    verb.add_flag("--relaxed", settings.relaxed, "invariants: where no pattern fits, leave out what the best quadruple leaves out");
+    verb.numbers("--direction", options.direction, 3, "guaranteed: also the interval along this body vector, as in 0,0,1");
+    verb.flag("--instruments", settings.instruments, "subset: a fault takes a whole instrument");
+    verb.flag("--relaxed", settings.relaxed, "invariants: where no pattern fits, leave out what the best quadruple leaves out");
 }
 
 }  // namespace
 
-void add_assess(CLI::App& program)
+void add_assess(Program& program)
 {
-    auto* verb = program.add_subcommand("assess", "Judges rows of measurements: which axes lie? One JSON object per row.");
+    auto verb = program.verb("assess", "Judges rows of measurements: which axes lie? One JSON object per row.");
     std::string footer =
         "One measurement per row, one number per axis, in any unit; --sigma, --bound, --threshold and --tolerance are in the same.\n"
         "Axes are 0-based, rows too. Fields of each method beside the common ones:\n";
@@ -144,17 +143,16 @@ void add_assess(CLI::App& program)
         "\nExample: two of six gyros are wrong (deg/h)\n"
         "  echo -393.04,1075.35,-612.73,-593.11,1254.79,-761.19 |\n"
         "    quorient assess --method guaranteed --layout guaranteed-cone --bound 1 --threshold 10\n";
-    verb->footer(footer);
+    verb.footer(footer);
 
     const auto options = std::make_shared<AssessOptions>();
-    add_cluster_options(*verb, options->choice);
-    add_method_options(*verb, *options);
-    verb->add_option("file", options->file, "CSV of measurements; '-' = stdin")->option_text("FILE");
-    verb->add_flag_function(
-        "--json", [](std::int64_t) {}, "one JSON object per row, which is the only format");
-    verb->add_option("--check", options->check, "exit 1 unless this is the outcome of every row")
-        ->check(CLI::IsMember(std::vector<std::string>(outcome_names.begin(), outcome_names.end())));
-    verb->callback([options, verb] { run(*options, *verb); });
+    add_cluster_options(verb, options->choice);
+    add_method_options(verb, *options);
+    verb.option("file", options->file, "CSV of measurements; '-' = stdin").value_name("FILE");
+    verb.flag("--json", options->json, "one JSON object per row, which is the only format");
+    verb.option("--check", options->check, "exit 1 unless this is the outcome of every row")
+        .one_of(std::vector<std::string>(outcome_names.begin(), outcome_names.end()));
+    verb.run([options, verb] { run(*options, verb); });
 }
 
 }  // namespace quorient::cli

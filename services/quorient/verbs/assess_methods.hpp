@@ -1,6 +1,6 @@
 #pragma once
 
-#include "json_output.hpp"
+#include "cli/json_output.hpp"
 #include "quorient/fdi/detector.hpp"
 #include "quorient/fdi/settings.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"

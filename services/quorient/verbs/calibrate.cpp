@@ -1,10 +1,10 @@
 #include "calibration_report.hpp"
-#include "cluster_input.hpp"
-#include "failure.hpp"
-#include "gated_terms.hpp"
-#include "json_output.hpp"
-#include "log_sample.hpp"
-#include "motion_level.hpp"
+#include "cli/cluster_input.hpp"
+#include "cli/program.hpp"
+#include "quorient/calibration/gated_terms.hpp"
+#include "cli/json_output.hpp"
+#include "quorient/calibration/log_sample.hpp"
+#include "quorient/calibration/motion_level.hpp"
 #include "quorient/recording/merge.hpp"
 #include "verbs.hpp"
 
@@ -34,7 +34,7 @@ std::vector<calibration::Sample> read_samples(recording::Reader& reader)
     recording::RecordedFrame frame;
     for (auto outcome = reader.next(frame); outcome != recording::ReadOutcome::end; outcome = reader.next(frame)) {
         if (outcome == recording::ReadOutcome::rejected) fmt::print(stderr, "{}\n", reader.problem());
-        else samples.push_back(sample_of(frame));
+        else samples.push_back(calibration::sample_of(frame));
     }
     return samples;
 }
@@ -96,28 +96,28 @@ void run(const CalibrateOptions& options)
 
 }  // namespace
 
-void add_calibrate(CLI::App& program)
+void add_calibrate(Program& program)
 {
-    auto* verb = program.add_subcommand("calibrate", "What a recording tells of its gyros: bias, noise, axes, motion noise, limits.");
-    verb->footer(
+    auto verb = program.verb("calibrate", "What a recording tells of its gyros: bias, noise, axes, motion noise, limits.");
+    verb.footer(
         "From resting segments: biases, noise, Allan deviation; from motion about all three axes, with more than three axes:\n"
         "directions and gains. Without rest, biases and noise are those in which the axes disagree. From violent motion of three\n"
         "instruments or more: the noise that their detector has to bear. --out writes the cluster file that a publisher reads.\n\n"
         "Example:\n"
         "  quorient calibrate exp_1/data.bin --out cluster.yaml --plot calibration.svg\n");
     const auto options = std::make_shared<CalibrateOptions>();
-    verb->add_option("log", options->logs,
+    verb.option("log", options->logs,
                      "MIMU4444 binary, Xsens DOT CSV, or CSV as quorient simulate writes it; several of one motion are merged")
-        ->option_text("LOG ...")
-        ->required();
-    add_cluster_options(*verb, options->choice);
-    verb->add_option("--out", options->out, "cluster file to write (YAML)");
-    verb->add_option("--plot", options->plot, "Allan deviation and motion noise, as SVG");
-    verb->add_option("--rest-s", options->rest.shortest_s, "shortest rest that counts, s")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    verb->add_flag("--json", options->json, "one JSON object");
-    verb->callback([options] { run(*options); });
+        .value_name("LOG ...")
+        .required();
+    add_cluster_options(verb, options->choice);
+    verb.option("--out", options->out, "cluster file to write (YAML)");
+    verb.option("--plot", options->plot, "Allan deviation and motion noise, as SVG");
+    verb.option("--rest-s", options->rest.shortest_s, "shortest rest that counts, s")
+        .shows_default()
+        .positive();
+    verb.flag("--json", options->json, "one JSON object");
+    verb.run([options] { run(*options); });
 }
 
 }  // namespace quorient::cli

@@ -44,7 +44,7 @@ Json gated_json(const Calibration& calibration)
 {
     const auto& gated = calibration.cluster.gated;
     if (!gated) return {};
-    return {{"along_s", gated->along_s}, {"across_s", gated->across_s}, {"axes", gated->axes}, {"rate", gated->rate}};
+    return {{"along_s", gated->jitter_along_s}, {"across_s", gated->jitter_across_s}, {"axes", gated->axes_error}, {"rate", gated->rate_error}};
 }
 
 Json motion_json(const Calibration& calibration)
@@ -124,7 +124,7 @@ std::string calibration_text(const Calibration& calibration, Samples samples, co
     if (const auto& gated = calibration.cluster.gated)
         text +=
             fmt::format("gated sums: {:.3f} ms along, {:.3f} ms across, axes {:.1e}, rate {:.1e} (all but the worst frames show so much)\n",
-                        gated->along_s * 1e3, gated->across_s * 1e3, gated->axes, gated->rate);
+                        gated->jitter_along_s * 1e3, gated->jitter_across_s * 1e3, gated->axes_error, gated->rate_error);
     if (motion.noise.samples == 0) return text + "motion noise: no sample turned violently enough to show it\n";
     text += fmt::format("motion noise: {:.3f} ms x |dw/dt| along it, {:.3f} ms across ({} samples, up to {:.0f} deg/s^2)\n",
                         motion.noise.along_s * 1e3, motion.noise.across_s * 1e3, motion.noise.samples,

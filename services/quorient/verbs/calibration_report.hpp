@@ -1,9 +1,9 @@
 #pragma once
 
-#include "json_output.hpp"
+#include "cli/json_output.hpp"
 #include "quorient/calibration/calibration.hpp"
 #include "quorient/recording/reader.hpp"
-#include "svg_plot.hpp"
+#include "cli/svg_plot.hpp"
 
 #include <string>
 #include <vector>

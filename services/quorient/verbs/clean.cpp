@@ -157,16 +157,16 @@ int clean(const CleanOptions& options)
 
 }  // namespace
 
-void add_clean(CLI::App& program)
+void add_clean(Program& program)
 {
-    auto* verb = program.add_subcommand("clean", "Remove what killed processes left: shared memory, sockets, heartbeats");
+    auto verb = program.verb("clean", "Remove what killed processes left: shared memory, sockets, heartbeats");
     auto options = std::make_shared<CleanOptions>();
-    verb->add_flag("--dry-run", options->dry_run, "Only print what would be removed");
-    verb->footer(
+    verb.flag("--dry-run", options->dry_run, "Only print what would be removed");
+    verb.footer(
         "Removes files of this user that no running process uses: Fast DDS's and iceoryx's in /dev/shm, iceoryx's sockets in /tmp, and the "
         "heartbeats in the run directory; logs stay. What is in use is kept and named, exit code 1.\nExample:\n  quorient clean --dry-run");
-    verb->callback([options] {
-        if (const int exit_code = clean(*options); exit_code != 0) throw CLI::RuntimeError(exit_code);
+    verb.run([options] {
+        if (const int exit_code = clean(*options); exit_code != 0) throw Exit{exit_code};
     });
 }
 

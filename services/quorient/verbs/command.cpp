@@ -4,7 +4,7 @@
 #include "quorient/messages/codes.hpp"
 #include "quorient/runtime/signals.hpp"
 #include "quorient/simulation/faults.hpp"
-#include "system_options.hpp"
+#include "cli/system_options.hpp"
 #include "verbs.hpp"
 
 #include <fmt/format.h>
@@ -45,39 +45,39 @@ FaultCommand inject_command(const CommandOptions& options)
     const auto fault = simulation::parse_fault(options.fault);
     if (!fault || fault->axes == 0) {
         fmt::print(stderr, "{}\n", fault ? "a live fault names its axis: axis=1,…" : fault.error());
-        throw CLI::RuntimeError(2);
+        throw Exit{2};
     }
     return simulation::to_command(*fault);
 }
 
 void finish(int exit_code)
 {
-    if (exit_code != 0) throw CLI::RuntimeError(exit_code);
+    if (exit_code != 0) throw Exit{exit_code};
 }
 
 }  // namespace
 
-void add_inject(CLI::App& program)
+void add_inject(Program& program)
 {
-    auto* verb = program.add_subcommand("inject", "Break an axis of a running unit; times count from now");
+    auto verb = program.verb("inject", "Break an axis of a running unit; times count from now");
     auto options = std::make_shared<CommandOptions>();
-    options->bus.add_to(*verb);
-    verb->add_option("fault", options->fault, "axis=1,kind=scale,value=0.8,start=0,end=10");
-    verb->add_flag("--clear", options->clear, "Take all faults back instead");
-    verb->footer("Example:\n  quorient inject axis=1,kind=bias,value=0.1,start=0");
-    verb->callback([options] { finish(send(*options, inject_command(*options))); });
+    options->bus.add_to(verb);
+    verb.option("fault", options->fault, "axis=1,kind=scale,value=0.8,start=0,end=10");
+    verb.flag("--clear", options->clear, "Take all faults back instead");
+    verb.footer("Example:\n  quorient inject axis=1,kind=bias,value=0.1,start=0");
+    verb.run([options] { finish(send(*options, inject_command(*options))); });
 }
 
-void add_readmit(CLI::App& program)
+void add_readmit(Program& program)
 {
-    auto* verb = program.add_subcommand("readmit", "Trust an isolated axis again");
+    auto verb = program.verb("readmit", "Trust an isolated axis again");
     auto options = std::make_shared<CommandOptions>();
-    options->bus.add_to(*verb);
-    verb->add_option("--axis", options->axes, "0-based; repeatable")->required()->check(CLI::Range(0, static_cast<int>(max_axes) - 1));
-    verb->footer(
+    options->bus.add_to(verb);
+    verb.numbers("--axis", options->axes, 0, "0-based; repeatable").required().between(0, static_cast<int>(max_axes) - 1);
+    verb.footer(
         "Refused while the other axes still contradict it, where a detector could not name it again (four axes; a vessel's channels).\n"
         "Example:\n  quorient readmit --axis 1");
-    verb->callback([options] {
+    verb.run([options] {
         FaultCommand command;
         command.action = static_cast<std::uint8_t>(CommandAction::readmit);
         for (const auto axis : options->axes) command.axes |= axis_bit(axis);
@@ -85,17 +85,14 @@ void add_readmit(CLI::App& program)
     });
 }
 
-void add_reset(CLI::App& program)
+void add_reset(Program& program)
 {
-    auto* verb = program.add_subcommand("reset", "State the attitude anew, e.g. after LOST: all lanes take it at one frame");
+    auto verb = program.verb("reset", "State the attitude anew, e.g. after LOST: all lanes take it at one frame");
     auto options = std::make_shared<CommandOptions>();
-    options->bus.add_to(*verb);
-    verb->add_option("--attitude", options->attitude, "w,x,y,z: body to reference at the newest frame")
-        ->required()
-        ->delimiter(',')
-        ->expected(4);
-    verb->footer("Example:\n  quorient reset --attitude 1,0,0,0");
-    verb->callback([options] {
+    options->bus.add_to(verb);
+    verb.numbers("--attitude", options->attitude, 4, "w,x,y,z: body to reference at the newest frame").required();
+    verb.footer("Example:\n  quorient reset --attitude 1,0,0,0");
+    verb.run([options] {
         FaultCommand command;
         command.action = static_cast<std::uint8_t>(CommandAction::reset_attitude);
         std::copy_n(options->attitude.begin(), command.attitude.size(), command.attitude.begin());

@@ -1,8 +1,8 @@
-#include "message_json.hpp"
+#include "cli/message_json.hpp"
 #include "quorient/bus/topics.hpp"
 #include "quorient/runtime/event_loop.hpp"
 #include "quorient/runtime/signals.hpp"
-#include "system_options.hpp"
+#include "cli/system_options.hpp"
 #include "verbs.hpp"
 
 #include <fmt/format.h>
@@ -71,21 +71,21 @@ int echo(const EchoOptions& options)
 
 }  // namespace
 
-void add_echo(CLI::App& program)
+void add_echo(Program& program)
 {
-    auto* verb = program.add_subcommand("echo", "Print the samples of a topic");
+    auto verb = program.verb("echo", "Print the samples of a topic");
     auto options = std::make_shared<EchoOptions>();
-    options->bus.add_to(*verb);
-    verb->add_option("topic", options->topic, "quorient/voter_output, or voter_output")->required();
-    verb->add_option("--count", options->count, "End after so many samples; 0 = go on");
-    verb->add_option("--timeout", options->timeout_s, "End with exit code 1 after so many seconds; 0 = go on");
-    verb->add_option("--lease", options->bus.voted_lease_s, "Of `voted`, if above max(50 ms, 3 intervals) in the system file")
-        ->type_name("S")
-        ->capture_default_str();
-    verb->add_flag("--json", options->json, "One JSON object per sample");
-    verb->footer("Example:\n  quorient echo voter_output --count 3 --json");
-    verb->callback([options] {
-        if (const int exit_code = echo(*options); exit_code != 0) throw CLI::RuntimeError(exit_code);
+    options->bus.add_to(verb);
+    verb.option("topic", options->topic, "quorient/voter_output, or voter_output").required();
+    verb.option("--count", options->count, "End after so many samples; 0 = go on");
+    verb.option("--timeout", options->timeout_s, "End with exit code 1 after so many seconds; 0 = go on");
+    verb.option("--lease", options->bus.voted_lease_s, "Of `voted`, if above max(50 ms, 3 intervals) in the system file")
+        .value_name("S")
+        .shows_default();
+    verb.flag("--json", options->json, "One JSON object per sample");
+    verb.footer("Example:\n  quorient echo voter_output --count 3 --json");
+    verb.run([options] {
+        if (const int exit_code = echo(*options); exit_code != 0) throw Exit{exit_code};
     });
 }
 

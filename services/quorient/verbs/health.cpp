@@ -29,15 +29,15 @@ int health(const HealthOptions& options)
 
 }  // namespace
 
-void add_health(CLI::App& program)
+void add_health(Program& program)
 {
-    auto* verb = program.add_subcommand("health", "Exit 0 if a service of this host handles frames, without joining DDS");
+    auto verb = program.verb("health", "Exit 0 if a service of this host handles frames, without joining DDS");
     auto options = std::make_shared<HealthOptions>();
-    verb->add_option("name", options->name, "The process's name in the system file")->required();
-    verb->add_option("--fresh", options->fresh_s, "A heartbeat older than this is stale")->type_name("S")->capture_default_str();
-    verb->footer("Example:\n  quorient health fdi-a");
-    verb->callback([options] {
-        if (const int exit_code = health(*options); exit_code != 0) throw CLI::RuntimeError(exit_code);
+    verb.option("name", options->name, "The process's name in the system file").required();
+    verb.option("--fresh", options->fresh_s, "A heartbeat older than this is stale").value_name("S").shows_default();
+    verb.footer("Example:\n  quorient health fdi-a");
+    verb.run([options] {
+        if (const int exit_code = health(*options); exit_code != 0) throw Exit{exit_code};
     });
 }
 

@@ -1,13 +1,13 @@
 #include "../launch/processes.hpp"
 #include "../launch/roudi.hpp"
 #include "../launch/screen.hpp"
-#include "../live/run_observer.hpp"
-#include "../live/summary.hpp"
-#include "json_output.hpp"
+#include "quorient/evaluation/run_observer.hpp"
+#include "report/summary.hpp"
+#include "cli/json_output.hpp"
 #include "quorient/runtime/event_loop.hpp"
 #include "quorient/runtime/heartbeat.hpp"
 #include "quorient/runtime/signals.hpp"
-#include "system_options.hpp"
+#include "cli/system_options.hpp"
 #include "verbs.hpp"
 
 #include <fmt/format.h>
@@ -135,9 +135,9 @@ private:
 
     int conclude()
     {
-        const auto failures = live::unmet(system_, observer_);
-        if (options_.json) fmt::print("{}\n", dump(live::summary_json(system_, observer_)));
-        else fmt::print("\n{}", live::summary_text(system_, observer_));
+        const auto failures = report::unmet(system_, observer_);
+        if (options_.json) fmt::print("{}\n", dump(report::summary_json(system_, observer_)));
+        else fmt::print("\n{}", report::summary_text(system_, observer_));
         for (const auto& failure : failures) fmt::print(stderr, "not as expected: {}\n", failure);
         if (!options_.json && system_.expectations.any() && failures.empty() && !failed_) fmt::print("as expected\n");
         return failed_ || !failures.empty() ? 1 : 0;
@@ -146,7 +146,7 @@ private:
     const LaunchOptions& options_;
     const system::System& system_;
     runtime::SystemClock clock_;
-    live::RunObserver observer_;
+    evaluation::RunObserver observer_;
     launch::Screen screen_;
     runtime::EventLoop loop_;
     launch::Processes processes_;
@@ -168,18 +168,18 @@ int launch_system(const LaunchOptions& options)
 
 }  // namespace
 
-void add_launch(CLI::App& program)
+void add_launch(Program& program)
 {
-    auto* verb = program.add_subcommand(
+    auto verb = program.verb(
         "launch", "Start the processes of a system file, restart those that die, show a live table, end with a summary");
     auto options = std::make_shared<LaunchOptions>();
-    options->system.add_to(*verb);
-    verb->add_option("--duration", options->duration_s, "Stop after so many seconds; else when the source ends")->type_name("S");
-    verb->add_flag("--json", options->json, "The summary as JSON, nothing else on stdout");
-    verb->footer(
+    options->system.add_to(verb);
+    verb.option("--duration", options->duration_s, "Stop after so many seconds; else when the source ends").value_name("S");
+    verb.flag("--json", options->json, "The summary as JSON, nothing else on stdout");
+    verb.footer(
         "Exit code 1 if the file's `expect` is not met.\nExample:\n  quorient launch deploy/configurations/demo.yaml --dds fastdds");
-    verb->callback([options] {
-        if (const int exit_code = launch_system(*options); exit_code != 0) throw CLI::RuntimeError(exit_code);
+    verb.run([options] {
+        if (const int exit_code = launch_system(*options); exit_code != 0) throw Exit{exit_code};
     });
 }
 

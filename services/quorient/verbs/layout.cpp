@@ -1,6 +1,6 @@
-#include "cluster_input.hpp"
-#include "failure.hpp"
-#include "json_output.hpp"
+#include "cli/cluster_input.hpp"
+#include "cli/program.hpp"
+#include "cli/json_output.hpp"
 #include "layout_report.hpp"
 #include "layout_table.hpp"
 #include "quorient/geometry/layouts.hpp"
@@ -61,23 +61,23 @@ void run(const LayoutOptions& options)
 
 }  // namespace
 
-void add_layout(CLI::App& program)
+void add_layout(Program& program)
 {
-    auto* verb = program.add_subcommand("layout", "Figures of a sensor layout: accuracy, parity equations, what faults they show.");
-    verb->footer(
+    auto verb = program.verb("layout", "Figures of a sensor layout: accuracy, parity equations, what faults they show.");
+    verb.footer(
         "Without NAME, lists the catalogue. Axes are 0-based.\n\n"
         "Example: the dodecahedron after its first two axes have failed\n"
         "  quorient layout dodecahedron --without 0,1\n");
     const auto options = std::make_shared<LayoutOptions>();
-    auto* name = verb->add_option("name", options->choice.layout, "a layout of the catalogue")->option_text("NAME");
-    auto* axes = verb->add_option("--axes", options->choice.axes_file, "a file of unit vectors, one axis per row: x, y, z; '-' = stdin");
-    auto* without =
-        verb->add_option("--without", options->without, "axes to leave out, as in 0,3")->allow_extra_args(false)->delimiter(',');
-    auto* table = verb->add_flag("--table", options->table, "the papers' tables beside ours, with the reason of every difference");
-    verb->add_flag("--json", options->json, "one line of JSON, 17 significant digits, null where undefined");
-    axes->excludes(name);
-    table->excludes(name)->excludes(axes)->excludes(without);
-    verb->callback([options] { run(*options); });
+    const auto name = verb.option("name", options->choice.layout, "a layout of the catalogue").value_name("NAME");
+    const auto axes = verb.option("--axes", options->choice.axes_file, "a file of unit vectors, one axis per row: x, y, z; '-' = stdin");
+    const auto without =
+        verb.numbers("--without", options->without, 0, "axes to leave out, as in 0,3");
+    const auto table = verb.flag("--table", options->table, "the papers' tables beside ours, with the reason of every difference");
+    verb.flag("--json", options->json, "one line of JSON, 17 significant digits, null where undefined");
+    axes.in_place_of({name});
+    table.in_place_of({name, axes, without});
+    verb.run([options] { run(*options); });
 }
 
 }  // namespace quorient::cli

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "json_output.hpp"
+#include "cli/json_output.hpp"
 
 #include <string>
 

@@ -1,6 +1,6 @@
-#include "csv_input.hpp"
-#include "failure.hpp"
-#include "json_output.hpp"
+#include "cli/csv_input.hpp"
+#include "cli/program.hpp"
+#include "cli/json_output.hpp"
 #include "quorient/attitude/propagator.hpp"
 #include "verbs.hpp"
 
@@ -74,23 +74,23 @@ void run(const PropagateOptions& options)
 
 }  // namespace
 
-void add_propagate(CLI::App& program)
+void add_propagate(Program& program)
 {
-    auto* verb = program.add_subcommand("propagate", "Body increments in, the attitude at the end of every row out.");
-    verb->footer(
+    auto verb = program.verb("propagate", "Body increments in, the attitude at the end of every row out.");
+    verb.footer(
         "Rows are three body increments (rad), the integral of the body rate over one interval. Output: row,q_w,q_x,q_y,q_z, body to "
         "reference.\n"
         "Algorithms: quorient propagate --list. The default fits the newest ten rows.\n\n"
         "Example: a quarter turn about z in ten rows\n"
         "  yes 0,0,0.15707963267948966 | head -10 | quorient propagate --algorithm window-10 --interval 0.01\n");
     const auto options = std::make_shared<PropagateOptions>();
-    verb->add_option("--algorithm", options->algorithm, "single, previous, two-sample, ..., window-N")->capture_default_str();
-    verb->add_option("--interval", options->interval_s, "that each row spans, s");
-    verb->add_option("--initial", options->initial, "attitude before the first row, w,x,y,z")->delimiter(',')->expected(4);
-    verb->add_option("file", options->file, "rows of increments; - is standard input")->option_text("FILE")->capture_default_str();
-    verb->add_flag("--list", options->list, "the algorithms with their equations and sources, instead");
-    verb->add_flag("--json", options->json, "one JSON object per row");
-    verb->callback([options] { run(*options); });
+    verb.option("--algorithm", options->algorithm, "single, previous, two-sample, ..., window-N").shows_default();
+    verb.option("--interval", options->interval_s, "that each row spans, s");
+    verb.numbers("--initial", options->initial, 4, "attitude before the first row, w,x,y,z");
+    verb.option("file", options->file, "rows of increments; - is standard input").value_name("FILE").shows_default();
+    verb.flag("--list", options->list, "the algorithms with their equations and sources, instead");
+    verb.flag("--json", options->json, "one JSON object per row");
+    verb.run([options] { run(*options); });
 }
 
 }  // namespace quorient::cli

@@ -2,7 +2,7 @@
 #include "quorient/recording/csv_writer.hpp"
 #include "quorient/runtime/event_loop.hpp"
 #include "quorient/runtime/signals.hpp"
-#include "system_options.hpp"
+#include "cli/system_options.hpp"
 #include "verbs.hpp"
 
 #include <fmt/format.h>
@@ -47,16 +47,16 @@ int record(const RecordOptions& options)
 
 }  // namespace
 
-void add_record(CLI::App& program)
+void add_record(Program& program)
 {
-    auto* verb = program.add_subcommand("record", "Write a unit's frames to a CSV that replay reads back bit for bit");
+    auto verb = program.verb("record", "Write a unit's frames to a CSV that replay reads back bit for bit");
     auto options = std::make_shared<RecordOptions>();
-    options->bus.add_to(*verb);
-    verb->add_option("file", options->file, "Where to")->required();
-    verb->add_option("--duration", options->duration_s, "End after so many seconds; 0 = until Ctrl-C")->type_name("S");
-    verb->footer("Example:\n  quorient record flight.csv --duration 60");
-    verb->callback([options] {
-        if (const int exit_code = record(*options); exit_code != 0) throw CLI::RuntimeError(exit_code);
+    options->bus.add_to(verb);
+    verb.option("file", options->file, "Where to").required();
+    verb.option("--duration", options->duration_s, "End after so many seconds; 0 = until Ctrl-C").value_name("S");
+    verb.footer("Example:\n  quorient record flight.csv --duration 60");
+    verb.run([options] {
+        if (const int exit_code = record(*options); exit_code != 0) throw Exit{exit_code};
     });
 }
 

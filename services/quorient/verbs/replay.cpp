@@ -1,8 +1,8 @@
-#include "../live/offline.hpp"
-#include "../live/replay_report.hpp"
-#include "../live/run_observer.hpp"
-#include "json_output.hpp"
-#include "system_options.hpp"
+#include "replay/offline.hpp"
+#include "report/replay_report.hpp"
+#include "quorient/evaluation/run_observer.hpp"
+#include "cli/json_output.hpp"
+#include "cli/system_options.hpp"
 #include "verbs.hpp"
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ struct ReplayOptions {
     bool json = false;
 };
 
-Json report_json(const live::RunObserver& run, const live::ReplayReport& report, const live::Offline& offline)
+Json report_json(const evaluation::RunObserver& run, const report::ReplayReport& report, const replay::Offline& offline)
 {
     const auto& errors = run.voted().errors;
     Json json;
@@ -80,9 +80,9 @@ int replay(ReplayOptions options)
     if (options.to_s) options.system.set.push_back(fmt::format("source.to_s={}", *options.to_s));
     const auto system = options.system.load();
 
-    live::RunObserver run{system, live::Shadow::off};
-    live::ReplayReport report{system};
-    live::Offline offline{system, run, report};
+    evaluation::RunObserver run{system, evaluation::Shadow::off};
+    report::ReplayReport report{system};
+    replay::Offline offline{system, run, report};
     if (const auto done = offline.run(); !done) {
         fmt::print(stderr, "{}\n", done.error());
         return 2;
@@ -95,22 +95,22 @@ int replay(ReplayOptions options)
 
 }  // namespace
 
-void add_replay(CLI::App& program)
+void add_replay(Program& program)
 {
-    auto* verb = program.add_subcommand(
+    auto verb = program.verb(
         "replay", "The whole system over a recording on the local bus, as fast as it goes; bit-identical on every run");
     auto options = std::make_shared<ReplayOptions>();
-    verb->add_option("log", options->logs,
+    verb.option("log", options->logs,
                      "MIMU4444 binary, Xsens DOT CSV, or the CSV of quorient simulate and record; several of one motion are merged")
-        ->required()
-        ->option_text("LOG ...");
-    options->system.add_replay_to(*verb);
-    verb->add_option("--from", options->from_s, "Begin here")->type_name("S");
-    verb->add_option("--to", options->to_s, "End here")->type_name("S");
-    verb->add_flag("--json", options->json, "One JSON object");
-    verb->footer("Example:\n  quorient replay data.bin --system deploy/configurations/mimu4444.yaml --to 22 --json");
-    verb->callback([options] {
-        if (const int exit_code = replay(*options); exit_code != 0) throw CLI::RuntimeError(exit_code);
+        .required()
+        .value_name("LOG ...");
+    options->system.add_replay_to(verb);
+    verb.option("--from", options->from_s, "Begin here").value_name("S");
+    verb.option("--to", options->to_s, "End here").value_name("S");
+    verb.flag("--json", options->json, "One JSON object");
+    verb.footer("Example:\n  quorient replay data.bin --system deploy/configurations/mimu4444.yaml --to 22 --json");
+    verb.run([options] {
+        if (const int exit_code = replay(*options); exit_code != 0) throw Exit{exit_code};
     });
 }
 

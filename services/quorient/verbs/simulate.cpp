@@ -1,6 +1,6 @@
-#include "cluster_input.hpp"
-#include "failure.hpp"
-#include "json_output.hpp"
+#include "cli/cluster_input.hpp"
+#include "cli/program.hpp"
+#include "cli/json_output.hpp"
 #include "quorient/recording/csv_writer.hpp"
 #include "quorient/simulation/simulated_instrument.hpp"
 #include "verbs.hpp"
@@ -150,33 +150,33 @@ void run(const SimulateOptions& options)
 }
 
 /// An option that only one motion understands: given with another, it would silently do nothing.
-CLI::Option* of_motion(CLI::Option* option, const std::shared_ptr<SimulateOptions>& options, const std::string& motion)
+void of_motion(Option option, const std::shared_ptr<SimulateOptions>& options, const std::string& motion)
 {
-    return option->group("Motion " + motion)->each([options, motion, name = option->get_name()](const std::string&) {
+    option.in_group("Motion " + motion).when_given([options, motion, option] {
         if (!options->motion.empty() && options->motion != motion)
-            fail(fmt::format("{} belongs to motion {}, not {}", name, motion, options->motion));
+            fail(fmt::format("{} belongs to motion {}, not {}", option.name(), motion, options->motion));
     });
 }
 
-void add_motion_options(CLI::App& verb, const std::shared_ptr<SimulateOptions>& o)
+void add_motion_options(Verb& verb, const std::shared_ptr<SimulateOptions>& o)
 {
-    of_motion(verb.add_option("--k2", o->coning.k2, "rate about the coning axes, rad/s")->capture_default_str(), o, "coning");
-    of_motion(verb.add_option("--k3", o->coning.k3, "rate about body x, rad/s")->capture_default_str(), o, "coning");
-    of_motion(verb.add_option("--mu", o->coning.mu, "initial attitude; mu^2 + nu^2 = 1")->capture_default_str(), o, "coning");
-    of_motion(verb.add_option("--nu", o->coning.nu, "initial attitude")->capture_default_str(), o, "coning");
-    of_motion(verb.add_option("--half-angle-deg", o->half_angle_deg, "of the cone")->capture_default_str(), o, "classic-coning");
-    of_motion(verb.add_option("--frequency-hz", o->frequency_hz, "of the cone")->capture_default_str(), o, "classic-coning");
-    of_motion(verb.add_option("--rate-deg-s", o->rate_deg_s, "body rate x,y,z")->delimiter(',')->expected(3), o, "turn");
-    of_motion(verb.add_option("--bandwidth-hz", o->bandwidth_hz, "highest frequency of the angles")->capture_default_str(), o, "random");
-    of_motion(verb.add_option("--rms-deg-s", o->rms_deg_s, "root mean square of the rate per axis")->capture_default_str(), o, "random");
+    of_motion(verb.option("--k2", o->coning.k2, "rate about the coning axes, rad/s").shows_default(), o, "coning");
+    of_motion(verb.option("--k3", o->coning.k3, "rate about body x, rad/s").shows_default(), o, "coning");
+    of_motion(verb.option("--mu", o->coning.mu, "initial attitude; mu^2 + nu^2 = 1").shows_default(), o, "coning");
+    of_motion(verb.option("--nu", o->coning.nu, "initial attitude").shows_default(), o, "coning");
+    of_motion(verb.option("--half-angle-deg", o->half_angle_deg, "of the cone").shows_default(), o, "classic-coning");
+    of_motion(verb.option("--frequency-hz", o->frequency_hz, "of the cone").shows_default(), o, "classic-coning");
+    of_motion(verb.numbers("--rate-deg-s", o->rate_deg_s, 3, "body rate x,y,z"), o, "turn");
+    of_motion(verb.option("--bandwidth-hz", o->bandwidth_hz, "highest frequency of the angles").shows_default(), o, "random");
+    of_motion(verb.option("--rms-deg-s", o->rms_deg_s, "root mean square of the rate per axis").shows_default(), o, "random");
 }
 
 }  // namespace
 
-void add_simulate(CLI::App& program)
+void add_simulate(Program& program)
 {
-    auto* verb = program.add_subcommand("simulate", "What a sensor cluster measures on a moving body, with the true attitude, as CSV.");
-    verb->footer(
+    auto verb = program.verb("simulate", "What a sensor cluster measures on a moving body, with the true attitude, as CSV.");
+    verb.footer(
         "Each row is one interval: its end, the increment of every axis (rad), the true attitude at its end. An axis without a sample "
         "reads nan.\n"
         "Faults: axis=I (or instrument=NAME), kind=bias|ramp|scale|stuck|zero|rail|sign|nan|noise|oscillation|dropout|delay|spike, "
@@ -186,23 +186,23 @@ void add_simulate(CLI::App& program)
         "  quorient simulate coning --interval 0.1 --quantum 0.4848e-6 --quantize body-truncate --fault "
         "axis=1,kind=scale,value=0.8,start=10\n");
     const auto options = std::make_shared<SimulateOptions>();
-    verb->add_option("motion", options->motion, "coning, classic-coning, rest, turn or random")
-        ->option_text("MOTION")
-        ->required()
-        ->check(CLI::IsMember({"coning", "classic-coning", "rest", "turn", "random"}));
-    add_cluster_options(*verb, options->choice);
-    add_motion_options(*verb, options);
-    verb->add_option("--interval", options->interval_s, "between frames, s")->capture_default_str();
-    verb->add_option("--duration", options->duration_s, "s")->capture_default_str();
-    verb->add_option("--seed", options->seed, "of noise, random motion and random faults")->capture_default_str();
-    verb->add_option("--quantum", options->quantum_rad, "smallest step of an increment, rad");
-    verb->add_option("--quantize", options->quantize, "none, carry, truncate or body-truncate; carry where a quantum is given");
-    verb->add_option("--noise-rad", options->noise_rad, "standard deviation of every increment, rad");
-    verb->add_option("--range-deg-s", options->range_deg_s, "where kind=rail sticks")->capture_default_str();
-    verb->add_option("--fault", options->faults, "SPEC, repeatable")->allow_extra_args(false)->option_text("SPEC ...");
-    verb->add_option("--at", options->at_s, "print the state at this time and the exact increments over the interval after it, instead");
-    verb->add_flag("--json", options->json, "one JSON object per row");
-    verb->callback([options] { run(*options); });
+    verb.option("motion", options->motion, "coning, classic-coning, rest, turn or random")
+        .value_name("MOTION")
+        .required()
+        .one_of({"coning", "classic-coning", "rest", "turn", "random"});
+    add_cluster_options(verb, options->choice);
+    add_motion_options(verb, options);
+    verb.option("--interval", options->interval_s, "between frames, s").shows_default();
+    verb.option("--duration", options->duration_s, "s").shows_default();
+    verb.option("--seed", options->seed, "of noise, random motion and random faults").shows_default();
+    verb.option("--quantum", options->quantum_rad, "smallest step of an increment, rad");
+    verb.option("--quantize", options->quantize, "none, carry, truncate or body-truncate; carry where a quantum is given");
+    verb.option("--noise-rad", options->noise_rad, "standard deviation of every increment, rad");
+    verb.option("--range-deg-s", options->range_deg_s, "where kind=rail sticks").shows_default();
+    verb.option("--fault", options->faults, "SPEC, repeatable").value_name("SPEC ...");
+    verb.option("--at", options->at_s, "print the state at this time and the exact increments over the interval after it, instead");
+    verb.flag("--json", options->json, "one JSON object per row");
+    verb.run([options] { run(*options); });
 }
 
 }  // namespace quorient::cli

@@ -1,10 +1,10 @@
-#include "message_json.hpp"
+#include "cli/message_json.hpp"
 #include "quorient/bus/settings.hpp"
 #include "quorient/bus/topics.hpp"
 #include "quorient/runtime/event_loop.hpp"
 #include "quorient/runtime/signals.hpp"
 #include "quorient/runtime/words.hpp"
-#include "system_options.hpp"
+#include "cli/system_options.hpp"
 #include "verbs.hpp"
 
 #include <fmt/chrono.h>
@@ -99,17 +99,17 @@ int status(const StatusOptions& options)
 
 }  // namespace
 
-void add_status(CLI::App& program)
+void add_status(Program& program)
 {
-    auto* verb = program.add_subcommand("status", "Who is alive, on which transport, at which rate and latency, and the latest events");
+    auto verb = program.verb("status", "Who is alive, on which transport, at which rate and latency, and the latest events");
     auto options = std::make_shared<StatusOptions>();
-    options->bus.add_to(*verb);
-    verb->add_option("--seconds", options->seconds, "How long to listen")->capture_default_str();
-    verb->add_option("--events", options->events, "How many events to show")->capture_default_str();
-    verb->add_flag("--json", options->json, "One JSON object");
-    verb->footer("Example:\n  quorient status --domain 42");
-    verb->callback([options] {
-        if (const int exit_code = status(*options); exit_code != 0) throw CLI::RuntimeError(exit_code);
+    options->bus.add_to(verb);
+    verb.option("--seconds", options->seconds, "How long to listen").shows_default();
+    verb.option("--events", options->events, "How many events to show").shows_default();
+    verb.flag("--json", options->json, "One JSON object");
+    verb.footer("Example:\n  quorient status --domain 42");
+    verb.run([options] {
+        if (const int exit_code = status(*options); exit_code != 0) throw Exit{exit_code};
     });
 }
 

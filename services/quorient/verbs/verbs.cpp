@@ -2,7 +2,7 @@
 
 namespace quorient::cli {
 
-void add_verbs(CLI::App& program)
+void add_verbs(Program& program)
 {
     add_launch(program);
     add_echo(program);
@@ -20,7 +20,6 @@ void add_verbs(CLI::App& program)
     add_simulate(program);
     add_vessel(program);
     add_calibrate(program);
-    add_lab(program);
 }
 
 }  // namespace quorient::cli

@@ -1,30 +1,30 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "cli/program.hpp"
+
 
 namespace quorient::cli {
 
 /// Each adds its sub-command with options, help and example to the program; the callback runs the verb.
-/// A verb ends by returning, or by throwing CLI::RuntimeError(exit_code) after it has explained itself on stderr.
-void add_launch(CLI::App& program);
-void add_echo(CLI::App& program);
-void add_status(CLI::App& program);
-void add_inject(CLI::App& program);
-void add_readmit(CLI::App& program);
-void add_reset(CLI::App& program);
-void add_health(CLI::App& program);
-void add_record(CLI::App& program);
-void add_replay(CLI::App& program);
-void add_clean(CLI::App& program);
-void add_layout(CLI::App& program);
-void add_assess(CLI::App& program);
-void add_propagate(CLI::App& program);
-void add_simulate(CLI::App& program);
-void add_vessel(CLI::App& program);
-void add_calibrate(CLI::App& program);
-void add_lab(CLI::App& program);
+/// A verb ends by returning, or by throwing Exit{exit_code} after it has explained itself on stderr.
+void add_launch(Program& program);
+void add_echo(Program& program);
+void add_status(Program& program);
+void add_inject(Program& program);
+void add_readmit(Program& program);
+void add_reset(Program& program);
+void add_health(Program& program);
+void add_record(Program& program);
+void add_replay(Program& program);
+void add_clean(Program& program);
+void add_layout(Program& program);
+void add_assess(Program& program);
+void add_propagate(Program& program);
+void add_simulate(Program& program);
+void add_vessel(Program& program);
+void add_calibrate(Program& program);
 
 /// All verbs of the program.
-void add_verbs(CLI::App& program);
+void add_verbs(Program& program);
 
 }  // namespace quorient::cli

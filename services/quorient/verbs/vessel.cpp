@@ -1,5 +1,5 @@
-#include "failure.hpp"
-#include "json_output.hpp"
+#include "cli/program.hpp"
+#include "cli/json_output.hpp"
 #include "verbs.hpp"
 #include "vessel_plot.hpp"
 #include "vessel_run.hpp"
@@ -126,10 +126,10 @@ void run(const VesselOptions& options)
 
 }  // namespace
 
-void add_vessel(CLI::App& program)
+void add_vessel(Program& program)
 {
-    auto* verb = program.add_subcommand("vessel", "Faults of a vessel's rate sensors, found by observers (paper 001).");
-    verb->footer(
+    auto verb = program.verb("vessel", "Faults of a vessel's rate sensors, found by observers (paper 001).");
+    verb.footer(
         "Each row is one sample: the rudder, the true state, what each channel's observer did not expect, its metric, the decision.\n"
         "Without --fault the paper's run is played: 0.01 on channel 1 (yaw rate) during 20-30 s, on channel 0 (sway velocity) during 50-70 "
         "s;\n"
@@ -142,20 +142,20 @@ void add_vessel(CLI::App& program)
         "Examples: the gains of the paper's two observers; the paper's figures\n  quorient vessel --gains --scheme directional\n"
         "  quorient vessel --scheme directional --plot vessel.svg > vessel.csv\n");
     const auto options = std::make_shared<VesselOptions>();
-    verb->add_option("--vessel", options->file, "YAML file of a vessel or any linear plant")->option_text("FILE");
-    verb->add_option("--scheme", options->scheme, "directional or blind; blind where not given (--gains: both)")
-        ->check(CLI::IsMember({"directional", "blind"}));
-    verb->add_option("--fault", options->faults, "SPEC, repeatable; or none")->allow_extra_args(false)->option_text("SPEC ...");
-    verb->add_option("--interval", options->interval_s, "between samples, s")->capture_default_str();
-    verb->add_option("--duration", options->duration_s, "s")->capture_default_str();
-    verb->add_option("--noise", options->noise, "standard deviation of every sample, in the channel's unit")->capture_default_str();
-    verb->add_option("--seed", options->seed, "of the noise")->capture_default_str();
-    verb->add_option("--plot", options->plot_file, "the run as figures 4 to 6 of the paper")->option_text("FILE.svg");
-    verb->add_flag("--gains", options->gains, "print A, B, C, every observer's gain and poles as JSON, instead");
-    verb->add_flag("--table", options->table, "print the paper's run beside the figures recomputed from it: gains, window means, decisions")
-        ->excludes("--gains", "--vessel", "--fault");
-    verb->add_flag("--json", options->json, "one JSON object per row");
-    verb->callback([options] { run(*options); });
+    const auto vessel = verb.option("--vessel", options->file, "YAML file of a vessel or any linear plant").value_name("FILE");
+    verb.option("--scheme", options->scheme, "directional or blind; blind where not given (--gains: both)")
+        .one_of({"directional", "blind"});
+    const auto fault = verb.option("--fault", options->faults, "SPEC, repeatable; or none").value_name("SPEC ...");
+    verb.option("--interval", options->interval_s, "between samples, s").shows_default();
+    verb.option("--duration", options->duration_s, "s").shows_default();
+    verb.option("--noise", options->noise, "standard deviation of every sample, in the channel's unit").shows_default();
+    verb.option("--seed", options->seed, "of the noise").shows_default();
+    verb.option("--plot", options->plot_file, "the run as figures 4 to 6 of the paper").value_name("FILE.svg");
+    const auto gains = verb.flag("--gains", options->gains, "print A, B, C, every observer's gain and poles as JSON, instead");
+    verb.flag("--table", options->table, "print the paper's run beside the figures recomputed from it: gains, window means, decisions")
+        .in_place_of({gains, vessel, fault});
+    verb.flag("--json", options->json, "one JSON object per row");
+    verb.run([options] { run(*options); });
 }
 
 }  // namespace quorient::cli

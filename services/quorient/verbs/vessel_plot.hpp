@@ -1,6 +1,6 @@
 #pragma once
 
-#include "svg_plot.hpp"
+#include "cli/svg_plot.hpp"
 #include "vessel_run.hpp"
 
 #include <string>

@@ -1,6 +1,6 @@
 #include "vessel_run.hpp"
 
-#include "failure.hpp"
+#include "cli/program.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

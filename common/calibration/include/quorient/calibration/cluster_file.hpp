@@ -1,5 +1,6 @@
 #pragma once
 
+#include "quorient/fdi/settings.hpp"
 #include "quorient/messages/cluster_description.hpp"
 #include "quorient/messages/limits.hpp"
 
@@ -10,24 +11,16 @@
 
 namespace quorient::calibration {
 
-/// What a moving array shows beyond its noise at rest in all but its worst frames; one standard deviation each.
-struct GatedTerms {
-    double along_s = 0;   ///< times |d omega/dt|, along it
-    double across_s = 0;  ///< and across
-    double axes = 0;      ///< times the rotation
-    double rate = 0;      ///< times the angle turned through
-};
-
 /// A cluster as calibrated. Whoever plays raw measurements takes out the bias, then divides by the gain:
 /// increment = (raw - bias * interval) / gain.
 struct CalibratedCluster {
     ClusterDescription description;  ///< axes, bias, sigma, range … of the corrected increments
     std::array<double, max_axes> gain{};
     std::array<double, max_axes> bias_spread_rad_s{};
-    double jitter_along_s = 0;  ///< as MotionNoise
+    double jitter_along_s = 0;  ///< as SamplingJitter
     double jitter_across_s = 0;
     double motion_level = 0;            ///< times the motion noise that is usual for arrays; 0 = not known
-    std::optional<GatedTerms> gated{};  ///< nothing where the recording does not tell
+    std::optional<fdi::GatedNoise> gated{};  ///< nothing where the recording does not tell
     std::string origin;                 ///< which log it comes from
 };
 

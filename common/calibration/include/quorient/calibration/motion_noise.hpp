@@ -8,7 +8,7 @@ namespace quorient::calibration {
 
 /// What the axes' disagreement grows with when the cluster moves: as if each instrument sampled at its own, jittering time.
 /// Covariance of an axis h under the angular acceleration a: s0^2 + along_s^2 (h'a)^2 + across_s^2 (|a|^2 - (h'a)^2). [methods, item 5]
-struct MotionNoise {
+struct SamplingJitter {
     double along_s = 0;
     double across_s = 0;
     double largest_acceleration_rad_s2 = 0;  ///< that the estimate has seen
@@ -30,7 +30,7 @@ struct WindowResidual {
 };
 
 struct MotionFigures {
-    MotionNoise noise;
+    SamplingJitter noise;
     std::vector<DisagreementBin> bins;
     std::vector<WindowResidual> windows;
 };

@@ -1,0 +1,130 @@
+#pragma once
+
+#include "quorient/evaluation/fault_spells.hpp"
+#include "quorient/attitude/integrator.hpp"
+#include "quorient/messages/attitude_state.hpp"
+#include "quorient/messages/cluster_description.hpp"
+#include "quorient/messages/fault_verdict.hpp"
+#include "quorient/messages/sensor_frame.hpp"
+#include "quorient/messages/truth_state.hpp"
+#include "quorient/messages/voted_attitude.hpp"
+#include "quorient/system/system.hpp"
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+namespace quorient::evaluation {
+
+/// Angle errors against truth over a run [rad].
+struct Errors {
+    std::uint64_t compared = 0;
+    double largest_rad = 0;
+    double final_rad = 0;
+    Identity final_identity;
+
+    void add(Identity identity, double error_rad);
+};
+
+struct LaneRecord {
+    std::string name;
+    Vendor vendor = Vendor::unknown;
+    FaultVerdict verdict;
+    AttitudeState attitude;
+    bool heard = false;
+    std::optional<Identity> isolated_at;  ///< first verdict that isolated anything after the truth's fault began
+    AxisMask isolated_first = 0;
+    AxisMask isolated_ever = 0;
+    AxisMask triad_after = 0;  ///< axes in use after the first isolation
+    std::uint64_t verdicts = 0;
+    std::uint64_t suspicious = 0;  ///< verdicts that were SUSPECT, AMBIGUOUS or BLIND
+    Spells isolated;
+    std::uint64_t frames = 0;
+    std::uint64_t largest_roll_back = 0;
+    Errors errors;
+};
+
+struct VotedRecord {
+    VotedAttitude latest;
+    bool heard = false;
+    std::uint64_t frames = 0;      ///< distinct identities
+    std::uint64_t disordered = 0;  ///< output_sequence that did not increase, of one voter
+    Errors errors;
+};
+
+/// Whether an integrator of the observer's own runs along without roll-back, for comparison.
+enum class Shadow { on, off };
+
+/// Compares what a system says with what the simulator knows. Fed by a live bus or by a replay; knows neither clock nor DDS.
+class RunObserver {
+public:
+    explicit RunObserver(const system::System& system, Shadow shadow = Shadow::on);
+
+    void on_description(const ClusterDescription& description);
+    void on_frame(const SensorFrame& frame);
+    void on_truth(const TruthState& truth);
+    void on_verdict(const FaultVerdict& verdict);
+    void on_attitude(const AttitudeState& attitude);
+    void on_voted(const VotedAttitude& voted);
+
+    const std::vector<LaneRecord>& lanes() const { return lanes_; }
+    const VotedRecord& voted() const { return voted_; }
+
+    /// Attitude of the first lane's axes if verdicts acted only from their own frame on.
+    const Errors& without_rollback() const { return without_rollback_; }
+
+    std::optional<Identity> fault_began() const { return fault_began_; }
+    std::optional<Identity> fault_ended() const { return fault_ended_; }
+    AxisMask faulty() const { return faulty_; }
+    const Spells& faults() const { return faults_; }
+    std::uint64_t truth_frames() const { return truth_frames_; }
+    Identity newest_truth() const { return newest_truth_; }
+    const std::optional<ClusterDescription>& description() const { return description_; }
+    double time_s(Identity identity) const;
+
+    /// Frames from the fault's first to the lane's isolation, counting both ends' difference.
+    std::optional<std::uint64_t> frames_to_isolation(const LaneRecord& lane) const;
+
+    /// Voted identities that never came, up to the newest truth.
+    std::uint64_t missing_voted() const;
+
+private:
+    /// A fault may touch no value in a frame (a scale fault of a value that passes 0) and still last.
+    static constexpr double longest_pause_s = 0.2;
+
+    /// An attitude whose truth has not arrived yet.
+    struct Waiting {
+        Identity identity;
+        std::array<double, 4> attitude;
+        Errors* errors;
+    };
+
+    void compare(Identity identity, const std::array<double, 4>& attitude, Errors& errors);
+    void compare_waiting();
+    LaneRecord* lane_of(std::uint32_t lane);
+    LaneRecord* lane_of_detector(std::uint32_t detector);
+
+    const system::System& system_;
+    Shadow shadow_wanted_;
+    std::vector<LaneRecord> lanes_;
+    VotedRecord voted_;
+    Errors without_rollback_;
+    std::optional<attitude::Integrator> shadow_;
+    std::optional<ClusterDescription> description_;
+    std::unordered_map<std::uint64_t, TruthState> truth_;                         // of the newest epoch, by sequence
+    std::map<std::uint64_t, std::unordered_set<std::uint64_t>> voted_sequences_;  // by epoch, from the newest truth's on
+    std::map<std::uint32_t, std::uint64_t> output_sequences_;                     // by voter
+    std::vector<Waiting> waiting_;
+    std::optional<Identity> fault_began_;
+    std::optional<Identity> fault_ended_;
+    AxisMask faulty_ = 0;
+    Spells faults_{longest_pause_s};
+    std::uint64_t truth_frames_ = 0;
+    Identity newest_truth_;
+};
+
+}  // namespace quorient::evaluation

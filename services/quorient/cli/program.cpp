@@ -1,0 +1,273 @@
+#include "program.hpp"
+
+#include "quorient/runtime/options.hpp"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+namespace quorient::cli {
+
+namespace {
+
+bool is_number(std::string_view text)
+{
+    double value = 0;
+    return !text.empty() && CLI::detail::lexical_cast(std::string(text), value);
+}
+
+bool is_number_list(const std::string& argument)
+{
+    const auto parts = CLI::detail::split(argument, ',');
+    return std::all_of(parts.begin(), parts.end(), [](const std::string& part) { return is_number(part); });
+}
+
+std::size_t count_of(const std::string& argument)
+{
+    return 1 + static_cast<std::size_t>(std::count(argument.begin(), argument.end(), ','));
+}
+
+std::string example_of(std::size_t count)
+{
+    std::string numbers = "1";
+    while (--count > 0) numbers += ",0";
+    return numbers;
+}
+
+/// `--initial 1 0 0 0 FILE` becomes `--initial=1,0,0,0 FILE`: in one argument, so that no number is taken for anything else.
+/// @param arguments  the verb's name and what follows it. A list of a wrong length ends the verb.
+std::vector<std::string> with_joined_lists(const std::vector<NumberList>& lists, const std::vector<std::string>& arguments)
+{
+    std::vector<std::string> joined;
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+        const auto equals = std::min(arguments[i].find('='), arguments[i].size());
+        const auto name = arguments[i].substr(0, equals);
+        const auto list = std::find_if(lists.begin(), lists.end(), [&](const NumberList& known) {
+            return known.verb == arguments.front() && known.option == name;
+        });
+        joined.push_back(arguments[i]);
+        if (list == lists.end()) continue;
+        std::string numbers = equals < arguments[i].size() ? arguments[i].substr(equals + 1) : "";
+        std::size_t taken = numbers.empty() ? 0 : count_of(numbers);
+        while (i + 1 < arguments.size() && is_number_list(arguments[i + 1]) && (list->count == 0 || taken < list->count)) {
+            taken += count_of(arguments[++i]);
+            numbers += (numbers.empty() ? "" : ",") + arguments[i];
+        }
+        if (list->count != 0 && taken != list->count)
+            fail(fmt::format("{} takes {} numbers, as in {} {}; got {}", name, list->count, name, example_of(list->count), taken));
+        if (!numbers.empty()) joined.back() = name + "=" + numbers;
+    }
+    return joined;
+}
+
+std::size_t distance_between(std::string_view a, std::string_view b)
+{
+    std::vector<std::size_t> row(b.size() + 1);
+    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+            diagonal = row[j];
+            row[j] = std::min({row[j] + 1, row[j - 1] + 1, changed});
+        }
+    }
+    return row.back();
+}
+
+/// " Did you mean 'replay'?", or nothing where no word is near.
+std::string suggestion(const std::string& word, const std::vector<std::string>& known)
+{
+    const auto nearest = std::min_element(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
+        return distance_between(word, a) < distance_between(word, b);
+    });
+    if (nearest == known.end() || distance_between(word, *nearest) > std::max<std::size_t>(2, word.size() / 3)) return {};
+    return fmt::format(" Did you mean '{}'?", *nearest);
+}
+
+}  // namespace
+
+void fail(std::string_view explanation)
+{
+    fmt::print(stderr, "{}\n", explanation);
+    throw Exit{2};
+}
+
+Option Option::required() const
+{
+    option_->required();
+    return *this;
+}
+
+Option Option::one_of(std::vector<std::string> words) const
+{
+    option_->check(CLI::Validator(
+        [words](std::string& given) {
+            if (std::find(words.begin(), words.end(), given) != words.end()) return std::string{};
+            return fmt::format("unknown word '{}'; known are {}.{}", given, fmt::join(words, ", "), suggestion(given, words));
+        },
+        "{" + CLI::detail::join(words, ",") + "}"));
+    return *this;
+}
+
+Option Option::between(double lowest, double highest) const
+{
+    option_->check(CLI::Validator(
+        [lowest, highest](std::string& given) {
+            double value = 0;
+            if (CLI::detail::lexical_cast(given, value) && value >= lowest && value <= highest) return std::string{};
+            return fmt::format("{} is not between {} and {}", given, lowest, highest);
+        },
+        fmt::format("[{} - {}]", lowest, highest)));
+    return *this;
+}
+
+Option Option::positive() const
+{
+    option_->check(CLI::PositiveNumber);
+    return *this;
+}
+
+Option Option::shows_default() const
+{
+    option_->capture_default_str();
+    return *this;
+}
+
+Option Option::value_name(const std::string& name) const
+{
+    if (option_->get_positional()) option_->option_text(name);
+    else option_->type_name(name);
+    return *this;
+}
+
+Option Option::in_place_of(std::initializer_list<Option> others) const
+{
+    for (const Option& other : others) option_->excludes(other.option_);
+    return *this;
+}
+
+Option Option::in_group(const std::string& title) const
+{
+    option_->group(title);
+    return *this;
+}
+
+Option Option::when_given(std::function<void()> check) const
+{
+    option_->each([check = std::move(check)](const std::string&) { check(); });
+    return *this;
+}
+
+std::string Option::name() const
+{
+    return option_->get_name();
+}
+
+template <class Target>
+Option Verb::option(const std::string& name, Target& target, const std::string& help)
+{
+    auto* option = app_->add_option(name, target, help);
+    option->allow_extra_args(false);
+    return Option{option};
+}
+
+template Option Verb::option(const std::string&, std::string&, const std::string&);
+template Option Verb::option(const std::string&, double&, const std::string&);
+template Option Verb::option(const std::string&, int&, const std::string&);
+template Option Verb::option(const std::string&, unsigned&, const std::string&);
+template Option Verb::option(const std::string&, std::uint64_t&, const std::string&);
+template Option Verb::option(const std::string&, std::optional<std::string>&, const std::string&);
+template Option Verb::option(const std::string&, std::optional<double>&, const std::string&);
+template Option Verb::option(const std::string&, std::optional<unsigned>&, const std::string&);
+template Option Verb::option(const std::string&, std::optional<std::uint64_t>&, const std::string&);
+template Option Verb::option(const std::string&, std::vector<std::string>&, const std::string&);
+
+template <class Number>
+Option Verb::numbers(const std::string& name, std::vector<Number>& target, std::size_t count, const std::string& help)
+{
+    auto* option = app_->add_option(name, target, help)->delimiter(',')->allow_extra_args(false);
+    lists_->push_back({app_->get_name(), name, count});
+    return Option{option};
+}
+
+template Option Verb::numbers(const std::string&, std::vector<double>&, std::size_t, const std::string&);
+template Option Verb::numbers(const std::string&, std::vector<std::size_t>&, std::size_t, const std::string&);
+template Option Verb::numbers(const std::string&, std::vector<unsigned>&, std::size_t, const std::string&);
+
+Option Verb::arguments(const std::string& name, std::vector<std::string>& target, const std::string& help)
+{
+    return Option{app_->add_option(name, target, help)};
+}
+
+Option Verb::flag(const std::string& name, bool& target, const std::string& help)
+{
+    return Option{app_->add_flag(name, target, help)};
+}
+
+void Verb::footer(const std::string& text)
+{
+    app_->footer(text);
+}
+
+void Verb::run(std::function<void()> action)
+{
+    app_->callback(std::move(action));
+}
+
+bool Verb::given(const std::string& name) const
+{
+    const auto* option = app_->get_option_no_throw(name);
+    return option != nullptr && option->count() > 0;
+}
+
+Program::Program(const std::string& name, const std::string& description) : app_(std::make_unique<CLI::App>(description, name))
+{
+    app_->set_version_flag("--version", runtime::version());
+    app_->require_subcommand(1);
+}
+
+Program::~Program() = default;
+
+Verb Program::verb(const std::string& name, const std::string& description)
+{
+    return Verb{*app_->add_subcommand(name, description), lists_};
+}
+
+void Program::footer(const std::string& text)
+{
+    app_->footer(text);
+}
+
+std::vector<std::string> Program::verbs() const
+{
+    std::vector<std::string> names;
+    for (const auto* verb : app_->get_subcommands({})) names.push_back(verb->get_name());
+    return names;
+}
+
+int Program::run(std::vector<std::string> arguments)
+{
+    if (!arguments.empty() && !arguments.front().starts_with("-")) {
+        const auto known = verbs();
+        if (std::find(known.begin(), known.end(), arguments.front()) == known.end()) {
+            fmt::print(stderr, "unknown verb '{}'.{}\nRun with --help for a list.\n", arguments.front(), suggestion(arguments.front(), known));
+            return 2;
+        }
+    }
+    try {
+        arguments = with_joined_lists(lists_, arguments);
+        std::reverse(arguments.begin(), arguments.end());  // as CLI11 wants them
+        app_->parse(std::move(arguments));
+    } catch (const Exit& exit) {
+        return exit.code;
+    } catch (const CLI::ParseError& error) {
+        return app_->exit(error) == 0 ? 0 : 2;
+    }
+    return 0;
+}
+
+}  // namespace quorient::cli

@@ -1,0 +1,95 @@
+#include "system_options.hpp"
+
+#include <fmt/format.h>
+#include <filesystem>
+
+namespace quorient::cli {
+
+void BusOptions::add_to(Verb& verb)
+{
+    verb.option("--dds", dds, "fastdds or cyclonedds").shows_default();
+    verb.option("--domain", domain, "DDS domain").shows_default();
+    verb.option("--interface", interface, "Network interface by name, address or subnet; any = the vendor's choice")
+        .shows_default();
+    verb.option("--peer", peers, "IPv4 address to look for peers at, in place of multicast (repeatable)")
+        .value_name("ADDRESS");
+    verb.option("--participants-per-host", participants_per_host, "That an address of --peer may have")
+        .between(1, 60)
+        .shows_default();
+    verb.option("--unit", unit, "Unit id").shows_default();
+}
+
+std::unique_ptr<bus::Bus> BusOptions::open(const std::string& participant) const
+{
+    const auto vendor = bus::vendor_from(dds);
+    if (!vendor) {
+        fmt::print(stderr, "--dds: {}\n", vendor.error());
+        throw Exit{2};
+    }
+    bus::Settings settings;
+    settings.vendor = *vendor;
+    settings.domain = domain;
+    settings.interface = interface == "any" ? "" : interface;
+    settings.peers = peers;
+    settings.participants_per_host = participants_per_host;
+    settings.participant = participant;
+    settings.voted_lease_s = voted_lease_s;
+    auto opened = bus::open(settings);
+    if (!opened) {
+        fmt::print(stderr, "{}\n", opened.error());
+        throw Exit{2};
+    }
+    return std::move(*opened);
+}
+
+void SystemOptions::add_to(Verb& verb)
+{
+    verb.option("system", file, "The system file (YAML)").required().value_name("SYSTEM.yaml");
+    verb.option("--dds", dds, "DDS vendor of every process in place of the file's: fastdds or cyclonedds");
+    verb.option("--domain", domain, "DDS domain in place of the file's");
+    verb.option(
+            "--set", set,
+            "A value in place of the file's, e.g. source.duration_s=5; a file's name counts from the system file's folder (repeatable)")
+        .value_name("KEY=VALUE");
+    verb.option("--log", log, "The recording in place of the file's");
+    verb.option("--speed", speed, "Times real time");
+    verb.option("--fault", faults, "One more fault, e.g. axis=1,kind=scale,value=0.8,start=8,end=18 (repeatable)");
+}
+
+void SystemOptions::add_replay_to(Verb& verb)
+{
+    verb.option("--system", file, "The system file (YAML); its source gives way to the log").required().value_name("FILE");
+    verb.option("--set", set, "A value in place of the file's; a file's name counts from the system file's folder (repeatable)")
+        .value_name("KEY=VALUE");
+    verb.option("--fault", faults, "One more fault, e.g. axis=7,kind=bias,value=1,start=14 (repeatable)");
+}
+
+std::vector<std::string> SystemOptions::assignments() const
+{
+    auto result = set;
+    if (!log.empty()) result.push_back(fmt::format("source.file={}", std::filesystem::absolute(log).string()));
+    if (speed) result.push_back(fmt::format("source.speed={}", *speed));
+    for (const auto& fault : faults) result.push_back(fmt::format("source.faults+='{}'", fault));
+    return result;
+}
+
+system::System SystemOptions::load() const
+{
+    system::Overrides overrides{.dds = {}, .domain = domain, .process = {}, .set = assignments()};
+    if (!dds.empty()) {
+        const auto vendor = bus::vendor_from(dds);
+        if (!vendor) {
+            fmt::print(stderr, "--dds: {}\n", vendor.error());
+            throw Exit{2};
+        }
+        overrides.dds = *vendor;
+    }
+    auto loaded = system::load(file, overrides);
+    if (!loaded) {
+        fmt::print(stderr, "{}\n", loaded.error());
+        throw Exit{2};
+    }
+    return std::move(*loaded);
+}
+
+}  // namespace quorient::cli

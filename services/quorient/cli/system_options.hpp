@@ -1,0 +1,49 @@
+#pragma once
+
+#include "program.hpp"
+#include "quorient/system/system.hpp"
+
+#include <memory>
+#include <string>
+
+namespace quorient::cli {
+
+/// `--dds`, `--domain`, `--interface`, `--peer`, `--unit`: how a live verb joins the bus.
+struct BusOptions {
+    std::string dds = "cyclonedds";
+    std::uint32_t domain = 42;
+    std::string interface = "lo";
+    std::vector<std::string> peers;
+    std::uint32_t participants_per_host = bus::Settings{}.participants_per_host;
+    std::uint32_t unit = 1;
+    double voted_lease_s = 0.05;  ///< see bus::Settings
+
+    void add_to(Verb& verb);
+
+    /// @throws Exit{2} after explaining a bad vendor, domain or interface on stderr.
+    std::unique_ptr<bus::Bus> open(const std::string& participant) const;
+};
+
+/// SYSTEM.yaml with `--dds`, `--domain`, `--set`, `--log`, `--speed`, `--fault`: a system file as a verb reads it.
+struct SystemOptions {
+    std::string file;
+    std::string dds;
+    std::optional<std::uint32_t> domain;
+    std::vector<std::string> set;
+    std::string log;
+    std::optional<double> speed;
+    std::vector<std::string> faults;
+
+    void add_to(Verb& verb);
+
+    /// As a replay takes them: `--system FILE` instead of a position, no live options.
+    void add_replay_to(Verb& verb);
+
+    /// All of it as values of the file.
+    std::vector<std::string> assignments() const;
+
+    /// @throws Exit{2} after explaining every problem on stderr.
+    system::System load() const;
+};
+
+}  // namespace quorient::cli

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "attitude_integrator.hpp"
+#include "parity_fdi.hpp"
+#include "quorient/bus/local_bus.hpp"
+#include "quorient/runtime/event_loop.hpp"
+#include "report/replay_report.hpp"
+#include "quorient/evaluation/run_observer.hpp"
+#include "sensor_publisher.hpp"
+#include "voter.hpp"
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+namespace quorient::replay {
+
+/// Every process of a system in one thread, on the local bus, under virtual time: the same objects as live, bit-identical on every run.
+class Offline {
+public:
+    Offline(system::System system, evaluation::RunObserver& observer, report::ReplayReport& report);
+
+    /// Until the source ends. @returns what is wrong with the source.
+    tl::expected<void, std::string> run();
+
+    /// The latest status of the first lane's detector: what its intake refused.
+    const ServiceStatus& intake() const { return intake_; }
+
+    /// What the source met on its way: of a log, what it refused and why, counted.
+    const std::string& remarks() const { return remarks_; }
+
+private:
+    void observe(evaluation::RunObserver& observer, report::ReplayReport& report);
+
+    system::System system_;
+    runtime::VirtualClock clock_;
+    std::atomic<bool> never_stop_{false};
+    bus::LocalHub hub_;
+    std::unique_ptr<bus::Bus> bus_;
+    runtime::EventLoop loop_;
+    std::vector<std::unique_ptr<voter::VoterService>> voters_;
+    std::vector<std::unique_ptr<integrator::AttitudeIntegrator>> integrators_;
+    std::vector<std::unique_ptr<detector::ParityFdi>> detectors_;
+    ServiceStatus intake_;
+    std::string remarks_;
+};
+
+}  // namespace quorient::replay

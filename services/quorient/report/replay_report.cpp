@@ -1,0 +1,92 @@
+#include "replay_report.hpp"
+
+#include "cli/json_output.hpp"
+#include "quorient/geometry/sensor_cluster.hpp"
+
+namespace quorient::report {
+
+namespace {
+
+nlohmann::ordered_json or_null(const std::optional<double>& value)
+{
+    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+bool seen(const FaultVerdict& verdict)
+{
+    return verdict.state >= static_cast<std::uint8_t>(VerdictState::suspect);
+}
+
+}  // namespace
+
+void ReplayReport::on_description(const ClusterDescription& description)
+{
+    if (!isolated_.empty()) return;
+    isolated_.resize(system_.lanes.size(), 0);
+    const auto cluster = geometry::make_cluster(description);
+    for (const auto& spec : system_.sensor.source.scenario.faults) {
+        const auto resolved = cluster ? simulation::resolve(spec, *cluster) : tl::make_unexpected(cluster.error());
+        faults_.push_back({resolved ? *resolved : spec, std::vector<Reaction>(system_.lanes.size())});
+    }
+}
+
+void ReplayReport::on_verdict(const FaultVerdict& verdict)
+{
+    for (std::size_t lane = 0; lane < isolated_.size(); ++lane) {
+        if (system_.lanes[lane].detector.detector == verdict.detector) judge(lane, verdict);
+    }
+}
+
+void ReplayReport::judge(std::size_t lane, const FaultVerdict& verdict)
+{
+    const double time_s = static_cast<double>(verdict.sample_time_ns) * 1e-9;
+    AxisMask faulty = 0;
+    for (auto& fault : faults_) {
+        if (time_s < fault.spec.start_s) continue;
+        faulty |= fault.spec.axes;
+        auto& reaction = fault.lanes[lane];
+        if (!reaction.detected_s && seen(verdict)) reaction.detected_s = time_s;
+        if (!reaction.isolated_s && (verdict.isolated_mask & fault.spec.axes) != 0) {
+            reaction.isolated_s = time_s;
+            reaction.isolated = verdict.isolated_mask;
+        }
+    }
+    const AxisMask newly = verdict.isolated_mask & ~isolated_[lane];
+    isolated_[lane] = verdict.isolated_mask;
+    // A detector of instruments rightly takes the whole instrument of a faulty axis.
+    if (newly != 0 && (newly & faulty) == 0) false_isolations_.push_back({lane, time_s, newly});
+}
+
+void ReplayReport::on_voted(const VotedAttitude& voted)
+{
+    const bool held =
+        voted.level == static_cast<std::uint8_t>(VoteLevel::coasting) || voted.level == static_cast<std::uint8_t>(VoteLevel::lost);
+    if (!held) final_attitude_ = voted;
+}
+
+nlohmann::ordered_json ReplayReport::faults() const
+{
+    auto list = nlohmann::ordered_json::array();
+    for (const auto& fault : faults_) {
+        nlohmann::ordered_json entry = {
+            {"spec", simulation::to_string(fault.spec)}, {"axes", cli::axes_json(fault.spec.axes)}, {"begin_s", fault.spec.start_s}};
+        for (std::size_t lane = 0; lane < fault.lanes.size(); ++lane) {
+            const auto& reaction = fault.lanes[lane];
+            entry["lanes"][system_.lanes[lane].name] = {{"detected_s", or_null(reaction.detected_s)},
+                                                        {"isolated_s", or_null(reaction.isolated_s)},
+                                                        {"isolated", cli::axes_json(reaction.isolated)}};
+        }
+        list.push_back(std::move(entry));
+    }
+    return list;
+}
+
+nlohmann::ordered_json ReplayReport::false_isolations() const
+{
+    auto list = nlohmann::ordered_json::array();
+    for (const auto& entry : false_isolations_)
+        list.push_back({{"lane", system_.lanes[entry.lane].name}, {"time_s", entry.time_s}, {"axes", cli::axes_json(entry.axes)}});
+    return list;
+}
+
+}  // namespace quorient::report
