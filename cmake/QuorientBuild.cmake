@@ -14,7 +14,8 @@ include(GoogleTest)
 find_program(CCACHE ccache)
 if(CCACHE)
   # What ccache's manual asks for where headers are precompiled. CCACHE_BASEDIR lets two checkouts share their results.
-  set(launcher ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${CCACHE})
+  set(launcher ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
+      CCACHE_PCH_EXTSUM=1 ${CCACHE})
   set(CMAKE_C_COMPILER_LAUNCHER ${launcher})
   set(CMAKE_CXX_COMPILER_LAUNCHER ${launcher})
 endif()
@@ -42,6 +43,10 @@ function(quorient_precompiled name)
   target_compile_options(precompiled_${name} PRIVATE ${arg_OPTIONS})
   target_link_libraries(precompiled_${name} PRIVATE ${arg_DEPENDS} quorient_warnings)
   target_precompile_headers(precompiled_${name} PRIVATE ${arg_HEADERS})
+  # ccache hashes this in place of the precompiled file, which is large and differs from one compilation of the same headers to the next.
+  string(SHA256 sum "${CMAKE_CXX_COMPILER_VERSION} ${CMAKE_BUILD_TYPE} ${CMAKE_CXX_FLAGS_RELWITHDEBINFO} ${arg_HEADERS} ${arg_OPTIONS} ${QUORIENT_SANITIZE}
+    ${QUORIENT_COVERAGE} ${Eigen3_VERSION} ${fmt_VERSION} ${tl-expected_VERSION} ${nlohmann_json_VERSION} ${GTest_VERSION}")
+  file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/precompiled_${name}.dir/cmake_pch.hxx.gch.sum "${sum}")
 endfunction()
 
 # quorient_precompile(TARGET NAME): compiles a target with the headers of quorient_precompiled(NAME).
