@@ -13,18 +13,18 @@ namespace {
 
 using geometry::AxisVector;
 
-constexpr std::size_t fewest_at_limit = 5;     // times that one extreme value comes before it is called a limit
+constexpr std::size_t fewest_at_limit = 5;     // an extreme value that occurs so often is a limit
 constexpr double limit_deviations = 50.0;      // noise alone never repeats an extreme this far out
-constexpr double near_limit = 0.975;           // of the limit: from here a MEMS gyro is not linear any more (1950 of 2000 deg/s)
+constexpr double near_limit = 0.975;           // share of the limit from which a MEMS gyro is no longer linear (1950 of 2000 deg/s)
 constexpr double vibration_window_s = 0.25;    // long against the vibration of rotors, short against a manoeuvre
-constexpr std::size_t frames_after_limit = 3;  // that its filter still remembers the clipping
+constexpr std::size_t frames_after_limit = 3;  // its filter remembers the clipping for so long
 
 std::size_t index(Eigen::Index axis)
 {
     return static_cast<std::size_t>(axis);
 }
 
-/// The largest magnitude of an axis and how often exactly it came.
+/// The largest magnitude of an axis and how often exactly this value occurred.
 struct Extreme {
     double magnitude = 0;
     std::size_t times = 0;
@@ -39,7 +39,7 @@ struct Extreme {
 };
 
 struct Limits {
-    AxisVector highest;  // at one end the codes may end one step earlier: the ends are told apart
+    AxisVector highest;  // the two ends are kept apart: at one of them the codes may end one step earlier
     AxisVector lowest;
 };
 
@@ -120,7 +120,7 @@ RestFigures mean_of_all(Samples samples)
     return figures;
 }
 
-/// Without rest: of the means, what no rotation explains; and the deviation of what no rotation explains.
+/// Without rest: the part of the means that no rotation explains, and the standard deviation of such parts.
 void keep_disagreement(const AxesFit& fit, const std::vector<AxisVector>& rates, const std::vector<bool>& usable, RestFigures& figures)
 {
     const geometry::Axes h = fit.axes.array().colwise() * fit.gain.array();

@@ -21,10 +21,10 @@ namespace {
 constexpr std::array<std::size_t, 7> windows{8, 16, 32, 64, 128, 256, 512};
 static_assert(windows.back() == fdi::ArraySums::longest_window);
 
-constexpr std::size_t order = 10;                       // of the order statistic
-constexpr std::size_t least_values = 4 * order;         // else a window has no say
-constexpr std::size_t least_instruments = 3;            // two cannot tell who is wrong
-constexpr std::size_t least_for_triples = 5;            // then triples of them are tried, too: their mean is less certain
+constexpr std::size_t order = 10;                       // the tenth largest value decides
+constexpr std::size_t least_values = 4 * order;         // a window with fewer values does not count
+constexpr std::size_t least_instruments = 3;            // with two the wrong one cannot be named
+constexpr std::size_t least_for_triples = 5;            // from so many on triples are tried too: their mean is less certain
 constexpr std::array<std::size_t, 3> triples{1, 4, 7};  // first instrument of each
 constexpr TermSearchSettings search{.close_enough = 0.015, .level_rounds = 8, .sweeps = 4};
 
@@ -43,7 +43,7 @@ fdi::MotionNoise noise_of(const Logs& logs, double bias_floor_rad_s)
 
 /// What one length of windows shows.
 struct Shown {
-    std::vector<double> chi_square{};  ///< of three degrees of freedom; windows overlap by half
+    std::vector<double> chi_square{};  ///< three degrees of freedom; windows overlap by half
     double log_step = 0;               ///< sum of logarithms, over axes and windows end to end
     double steps = 0;
 };
@@ -143,7 +143,7 @@ private:
 
     Samples samples_;
     const std::vector<HeldOut>& halves_;
-    std::vector<fdi::InstrumentArray> arrays_;  ///< of each half
+    std::vector<fdi::InstrumentArray> arrays_;  ///< one for each half
     double floor_;
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double longest_stretch_s = 20;
 
-/// What lies between these segments.
+/// The segments between these.
 std::vector<Segment> between(const std::vector<Segment>& rest, std::size_t samples)
 {
     std::vector<Segment> gaps;
@@ -39,7 +39,7 @@ std::vector<Segment> stretches_of(const std::vector<Segment>& rest, Samples samp
     return stretches;
 }
 
-/// The samples of these segments, in order; where something lies between two of them, the second does not follow.
+/// The samples of these segments, in order. A segment that does not adjoin the previous one is marked as not following.
 std::vector<Sample> joined(Samples samples, std::vector<Segment> segments)
 {
     std::sort(segments.begin(), segments.end(), [](const Segment& one, const Segment& two) { return one.begin < two.begin; });

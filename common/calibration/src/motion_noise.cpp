@@ -88,7 +88,7 @@ MotionFigures motion_figures(Samples samples, const std::vector<AxisVector>& rat
                              const geometry::Axes& axes, const AxisVector& deviation)
 {
     const auto project = projectors(axes);
-    const AxisVector share = project.residual.diagonal();  // of an axis's own error that its residual shows
+    const AxisVector share = project.residual.diagonal();  // share of an axis's own error that its residual shows
     std::vector<std::optional<AxisVector>> moving(samples.size());
     NoiseEquations equations;
     std::vector<BinSums> bins;

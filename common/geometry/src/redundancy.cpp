@@ -54,7 +54,7 @@ int rank_of(const Axes& axes, AxisMask used)
     if (kept.rows() == 0) return 0;
     const Eigen::Matrix3d normal_matrix = kept.transpose() * kept;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(normal_matrix, Eigen::EigenvaluesOnly);
-    const Eigen::Vector3d& squares = solver.eigenvalues();  // of the singular values of the rows, ascending
+    const Eigen::Vector3d& squares = solver.eigenvalues();  // squared singular values of the rows, ascending
     return static_cast<int>((squares.array() > coplanar_tolerance * coplanar_tolerance * squares(2)).count());
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double norm_tolerance = 1e-4;  // admits axes typed in five decimals, and catches a forgotten normalisation
 
-// Beyond these no sensor is, and the squares, their ratios and what is solved with them leave what a double resolves.
+// No sensor is outside these limits. Beyond them the squares, their ratios and the solutions leave the range that a double resolves.
 constexpr double least_noise = 1e-15, largest_noise = 1e3, largest_noise_ratio = 1e6;
 
 using Problem = std::optional<std::string>;

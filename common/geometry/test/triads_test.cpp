@@ -104,7 +104,7 @@ TEST(Triads, give_the_body_vector_from_any_three_axes)
 
 TEST(Triads, leave_out_axes_in_one_plane)
 {
-    EXPECT_EQ(triads(layout("octahedron-6")->axes).size(), 16U);  // of 20, four lie in a face's plane
+    EXPECT_EQ(triads(layout("octahedron-6")->axes).size(), 16U);  // four of the 20 lie in a face's plane
     EXPECT_EQ(triads(layout("triads-8")->axes).size(), 512U);
     EXPECT_FALSE(triad_inverse(layout("triads-2")->axes, {0, 1, 3}));
     EXPECT_TRUE(triad_inverse(layout("triads-2")->axes, {0, 1, 5}));

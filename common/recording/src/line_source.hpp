@@ -32,7 +32,7 @@ private:
 
     std::ifstream stream_;
     std::array<char, longest_line + 2> buffer_{};
-    std::size_t begin_ = 0;  // of what is not given out yet
+    std::size_t begin_ = 0;  // start of what is not given out yet
     std::size_t end_ = 0;
     std::uint64_t line_number_ = 0;
 };

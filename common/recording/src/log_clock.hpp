@@ -18,7 +18,7 @@ public:
         const std::int64_t intervals = std::llround(static_cast<double>(step_ns) / static_cast<double>(nominal_ns_));
         const bool fits = intervals >= 1 &&
                           std::abs(static_cast<double>(step_ns - intervals * nominal_ns_)) <= tolerance * static_cast<double>(nominal_ns_);
-        // After a jump that no gap explains, the clock's own step says nothing: one interval is the best guess.
+        // After a jump that no gap explains the clock's step is meaningless: one interval is the best guess.
         const bool jumped = step_ns < 0 || step_ns > longest_gap_ns;
         elapsed_ns_ += jumped ? nominal_ns_ : step_ns;
         missing_ = fits && !jumped ? static_cast<std::uint64_t>(intervals - 1) : 0;
@@ -40,7 +40,7 @@ public:
     }
 
 private:
-    static constexpr double tolerance = 0.25;                       // of one interval; the recordings at hand jitter by 2 %
+    static constexpr double tolerance = 0.25;                       // in intervals; the recordings at hand jitter by 2 %
     static constexpr std::int64_t longest_gap_ns = 60'000'000'000;  // beyond it a step forward is a clock set anew
 
     std::int64_t nominal_ns_;

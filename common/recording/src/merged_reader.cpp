@@ -21,7 +21,7 @@ class Follower {
 public:
     Follower(std::unique_ptr<Reader> reader, double offset_s) : reader_(std::move(reader)), offset_ns_(std::llround(offset_s * 1e9)) {}
 
-    /// Reads until it knows everything up to this time. @returns rejected if it met a refused record: call again.
+    /// Reads everything up to this time. @returns rejected if a record was refused: call again.
     ReadOutcome reach(std::int64_t begin_ns, std::int64_t end_ns)
     {
         while (!frames_.empty() && frames_.front().time_ns <= begin_ns) frames_.pop_front();
@@ -190,8 +190,8 @@ private:
     std::vector<Follower> followers_;
     RecordedFrame frame_;
     bool pending_ = false;            // the leader's frame waits for the followers
-    std::deque<RecordedFrame> held_;  // a log is over: its failure, or the end of all? At most switching_ns of frames
-    bool failed_ = false;             // it was its failure
+    std::deque<RecordedFrame> held_;  // frames after a log's end, until it is clear whether it failed or all end; at most switching_ns
+    bool failed_ = false;             // that log failed
     std::uint64_t frames_ = 0;
     std::uint64_t incomplete_ = 0;
 };

@@ -43,13 +43,13 @@ private:
     std::ifstream stream_;
     std::string file_;
     std::vector<std::uint8_t> buffer_;
-    std::size_t begin_ = 0;  // of the packet expected next
+    std::size_t begin_ = 0;  // start of the packet expected next
     std::size_t end_ = 0;
-    std::uint64_t offset_ = 0;  // of buffer_[begin_] in the file
+    std::uint64_t offset_ = 0;  // place of buffer_[begin_] in the file
     std::uint64_t record_ = 0;  // offset of the record in hand
     LogClock clock_;
     bool started_ = false;
-    std::uint16_t number_ = 0;  // of the record before
+    std::uint16_t number_ = 0;  // number of the previous record
     std::uint32_t ticks_ = 0;
     std::int64_t last_frame_ns_ = 0;
     double interval_s_ = 0;
@@ -80,7 +80,7 @@ protected:
     static std::optional<std::int64_t> stamp(std::string_view cell, double unit_ns);
 
     LogClock clock_;
-    std::optional<std::int64_t> stamp_ns_;  // of the record before
+    std::optional<std::int64_t> stamp_ns_;  // time stamp of the previous record
 
 private:
     LineSource lines_;
@@ -89,7 +89,7 @@ private:
     std::int64_t last_frame_ns_ = 0;
 };
 
-/// Where a text log keeps what: column numbers of its header.
+/// The columns of a text log, from its header.
 struct DotColumns {
     std::size_t time = 0;
     double time_unit_ns = 1;
@@ -132,10 +132,10 @@ private:
 
 inline constexpr std::size_t most_columns = 64;
 
-/// Where a header names this column.
+/// The place of this column in a header.
 std::optional<std::size_t> column(std::span<const std::string_view> header, std::string_view name);
 
-/// What a header names; nothing if it is not this format's. The error names what is missing.
+/// The columns that a header names; nothing if it is another format's header. The error names what is missing.
 std::optional<tl::expected<DotColumns, std::string>> dot_columns(std::span<const std::string_view> header);
 std::optional<tl::expected<CsvColumns, std::string>> csv_columns(std::span<const std::string_view> header);
 

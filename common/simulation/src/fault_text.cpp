@@ -11,7 +11,7 @@ namespace {
 struct Kind {
     std::string_view word;
     FaultKind kind;
-    std::string_view unit;  // of the value; empty = the kind has none
+    std::string_view unit;  // unit of the value; empty = the kind has no value
 };
 
 constexpr std::array kinds{

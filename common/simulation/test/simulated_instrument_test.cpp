@@ -142,7 +142,7 @@ TEST(SimulatedInstrument, reproduces_the_tables_of_paper_003)
     EXPECT_LT((cone4 - printed4).lpNorm<Eigen::Infinity>(), 1e-10);
 
     const Eigen::Vector4d cone3 = triad_moduli(cone_3_axis());
-    const Eigen::Vector3d printed3(.0078168378, .0081347854, .0097748732);  // the fourth is a misprint (methods, section 003)
+    const Eigen::Vector3d printed3(.0078168378, .0081347854, .0097748732);  // the fourth is a misprint (docs/methods/four_axes.md)
     EXPECT_LT((cone3.head<3>() - printed3).lpNorm<Eigen::Infinity>(), 1e-10);
 
     for (const auto& one : reference_cases("table003")) {

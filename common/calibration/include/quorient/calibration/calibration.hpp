@@ -13,7 +13,7 @@
 
 namespace quorient::calibration {
 
-/// Everything that a recording tells of its sensors.
+/// Everything that a recording shows about its sensors. [docs/methods/calibration.md]
 struct Calibration {
     CalibratedCluster cluster;  ///< what a publisher needs
     std::vector<Segment> rest;  ///< empty: they never rested, see calibrate
@@ -28,8 +28,8 @@ struct Calibration {
     std::array<double, max_axes> saturation_limit_rad_s{};  ///< the extreme value that came again and again; 0 = never reached
 };
 
-/// Where the sensors never rested, the axes' disagreement takes the place of rest: the biases are those that the axes do not have in
-/// common (the common part cannot be told from motion and stays 0), sigma is the disagreement over all the log's motion.
+/// Where the sensors never rested, the axes' disagreement takes the place of rest. The biases are those in which the axes differ; their
+/// common part cannot be distinguished from motion and stays 0. Sigma is the disagreement over all the log's motion.
 ///
 /// @param nominal  axes, instruments, names, range, quantum and interval of the log.
 /// @returns an error if the sensors never rested and have no redundancy either, or an axis is constant or of unknown direction.

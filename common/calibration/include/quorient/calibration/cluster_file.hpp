@@ -11,8 +11,7 @@
 
 namespace quorient::calibration {
 
-/// A cluster as calibrated. Whoever plays raw measurements takes out the bias, then divides by the gain:
-/// increment = (raw - bias * interval) / gain.
+/// A cluster as calibrated. Raw measurements are corrected by increment = (raw - bias * interval) / gain.
 struct CalibratedCluster {
     ClusterDescription description;  ///< axes, bias, sigma, range … of the corrected increments
     std::array<double, max_axes> gain{};
@@ -20,7 +19,7 @@ struct CalibratedCluster {
     double jitter_along_s = 0;  ///< as SamplingJitter
     double jitter_across_s = 0;
     double motion_level = 0;            ///< times the motion noise that is usual for arrays; 0 = not known
-    std::optional<fdi::GatedNoise> gated{};  ///< nothing where the recording does not tell
+    std::optional<fdi::GatedNoise> gated{};  ///< nothing where the recording does not show it
     std::string origin;                 ///< which log it comes from
 };
 

@@ -6,10 +6,10 @@
 
 namespace quorient::calibration {
 
-/// How wild an array's disagreement in motion is beside the usual (fdi::usual_motion_noise): the level at which the accumulating detector,
-/// played over the very recording that the calibration is of, comes no nearer to its threshold than 0.85. Never below 1: a recording of
-/// gentle motion says nothing of a violent one.
-/// @returns nothing where the array is not one that the detector takes, or the recording is of rest alone.
+/// Factor on fdi::usual_motion_noise for this array: with it the statistic of the accumulating detector stays at 0.85 of the threshold over
+/// the calibrated recording. Never below 1, because a recording of gentle motion shows nothing of a violent one.
+/// [docs/methods/calibration.md]
+/// @returns nothing where the detector does not accept the array, or the recording has no motion.
 std::optional<double> motion_level(Samples samples, const Calibration& calibration);
 
 }  // namespace quorient::calibration

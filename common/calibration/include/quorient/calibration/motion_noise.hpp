@@ -7,11 +7,12 @@
 namespace quorient::calibration {
 
 /// What the axes' disagreement grows with when the cluster moves: as if each instrument sampled at its own, jittering time.
-/// Covariance of an axis h under the angular acceleration a: s0^2 + along_s^2 (h'a)^2 + across_s^2 (|a|^2 - (h'a)^2). [methods, item 5]
+/// Covariance of an axis h under the angular acceleration a: s0^2 + along_s^2 (h'a)^2 + across_s^2 (|a|^2 - (h'a)^2).
+/// [docs/methods/calibration.md]
 struct SamplingJitter {
     double along_s = 0;
     double across_s = 0;
-    double largest_acceleration_rad_s2 = 0;  ///< that the estimate has seen
+    double largest_acceleration_rad_s2 = 0;  ///< in the samples of the estimate
     std::size_t samples = 0;
 };
 
@@ -36,7 +37,7 @@ struct MotionFigures {
 };
 
 /// @param rates      without bias, divided by the gains: one per sample; where `usable` is false they are passed over.
-/// @param deviation  of one sample at rest, per axis, likewise divided by the gains.
+/// @param deviation  standard deviation of one sample at rest, per axis, likewise divided by the gains.
 MotionFigures motion_figures(Samples samples, const std::vector<geometry::AxisVector>& rates, const std::vector<bool>& usable,
                              const geometry::Axes& axes, const geometry::AxisVector& deviation);
 

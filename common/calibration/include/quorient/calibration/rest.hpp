@@ -7,8 +7,8 @@
 namespace quorient::calibration {
 
 struct RestSettings {
-    double window_s = 1.0;          ///< what is judged at once
-    double shortest_s = 4.0;        ///< of a segment, before its ends are cut by half a window each
+    double window_s = 1.0;          ///< length of the windows that are judged
+    double shortest_s = 4.0;        ///< shortest segment, before its ends are cut by half a window each
     double deviation_rad_s = 0.02;  ///< above it nothing rests, however quiet it is relative to the rest of the log
     double quiet_factor = 3.0;      ///< a window rests if its variance is below this multiple of the quietest tenth's
     double mean_rad_s = 0.02;  ///< farthest that a window's mean may lie from the median of the quiet windows' (a slow turn is no rest)
@@ -17,11 +17,11 @@ struct RestSettings {
 /// The segments in which the sensors rested, in order, without gaps or missing axes inside.
 std::vector<Segment> resting_segments(Samples samples, const RestSettings& settings = {});
 
-/// What the resting segments say of each axis.
+/// Bias and noise of each axis from the resting segments.
 struct RestFigures {
     geometry::AxisVector bias_rad_s;         ///< mean over all resting samples
     geometry::AxisVector bias_spread_rad_s;  ///< standard deviation of the segments' means: how far a bias wanders
-    geometry::AxisVector deviation_rad_s;    ///< of one sample about its segment's mean
+    geometry::AxisVector deviation_rad_s;    ///< standard deviation of one sample about its segment's mean
 };
 
 /// @param segments  at least one, not empty.
@@ -38,7 +38,7 @@ struct AllanPoint {
 /// longest segment; the segments' terms are pooled. [IEEE Std 952-1997, annex C]
 std::vector<AllanPoint> allan_deviation(Samples samples, const std::vector<Segment>& segments);
 
-/// What an Allan deviation is usually told by.
+/// The usual figures of an Allan deviation.
 struct AllanFigures {
     geometry::AxisVector random_walk_rad_sqrt_s;  ///< deviation x sqrt(tau), median over the first four points
     geometry::AxisVector bias_instability_rad_s;  ///< smallest deviation / 0.664

@@ -7,32 +7,32 @@
 
 namespace quorient::calibration {
 
-/// Terms of a motion noise (by their logarithms), and what they are worth.
+/// Terms of a motion noise (their logarithms), with the step and the statistic that they give.
 template <std::size_t terms>
 struct TermPlace {
-    /// By how much (logarithms) the smallest step grows where all terms are raised until the statistic has fallen by one. Measured: 0.6 to
-    /// 0.9.
+    /// How much the logarithm of the smallest step grows when all terms are raised until the logarithm of the statistic falls by one.
+    /// Recordings show 0.6 to 0.9.
     static constexpr double exchange = 0.8;
 
     std::array<double, terms> logs{};
-    double step = 0;    ///< logarithm of the smallest step that can be told
+    double step = 0;    ///< logarithm of the smallest detectable step
     double excess = 0;  ///< logarithm of the statistic over the wanted one
     double merit() const { return step + exchange * excess; }
 };
 
 struct TermSearchSettings {
-    double close_enough = 0.01;  ///< of the excess
+    double close_enough = 0.01;  ///< tolerance of the excess
     int level_rounds = 12;
     int sweeps = 5;
 };
 
-/// Of all terms without an excess, some with which the smallest step is smallest: a pattern search, which finds a local minimum.
+/// Searches the terms without an excess for those with the smallest detectable step: a pattern search, which finds a local minimum.
 template <std::size_t terms, class Seen>
 class TermSearch {
 public:
     using Place = TermPlace<terms>;
 
-    /// @param seen  the place of some logarithms.
+    /// @param seen  evaluates logarithms of terms to their place.
     TermSearch(Place start, Seen seen, const TermSearchSettings& settings) : at_(start), seen_(std::move(seen)), settings_(settings) {}
 
     std::array<double, terms> result()
@@ -44,9 +44,9 @@ public:
     }
 
 private:
-    static constexpr double worth_a_step = 0.005;  ///< of the merit
+    static constexpr double worth_a_step = 0.005;  ///< smallest gain in merit
 
-    /// All terms by one factor, until the excess is none.
+    /// Scales all terms by one factor until the excess is zero.
     void level()
     {
         double lowest = -1e9;

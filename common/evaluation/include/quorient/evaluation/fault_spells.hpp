@@ -8,7 +8,7 @@
 
 namespace quorient::evaluation {
 
-/// From when to when one axis was faulty, or was held to be.
+/// Time in which one axis was faulty, or was isolated.
 struct Spell {
     std::size_t axis = 0;
     double begin_s = 0;
@@ -31,7 +31,7 @@ private:
     std::vector<Spell> spells_;
 };
 
-/// What one lane made of one fault.
+/// How one lane reacted to one fault.
 struct Reaction {
     std::optional<double> isolated_s;  ///< within the fault's spell
     std::optional<double> trusted_s;   ///< again

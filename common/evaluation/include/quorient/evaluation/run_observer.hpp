@@ -59,7 +59,8 @@ struct VotedRecord {
 /// Whether an integrator of the observer's own runs along without roll-back, for comparison.
 enum class Shadow { on, off };
 
-/// Compares what a system says with what the simulator knows. Fed by a live bus or by a replay; knows neither clock nor DDS.
+/// Compares the messages of a system with the simulator's truth. Input comes from a live bus or from a replay; clock and DDS are unknown
+/// here.
 class RunObserver {
 public:
     explicit RunObserver(const system::System& system, Shadow shadow = Shadow::on);
@@ -115,7 +116,7 @@ private:
     Errors without_rollback_;
     std::optional<attitude::Integrator> shadow_;
     std::optional<ClusterDescription> description_;
-    std::unordered_map<std::uint64_t, TruthState> truth_;                         // of the newest epoch, by sequence
+    std::unordered_map<std::uint64_t, TruthState> truth_;                         // by sequence, newest epoch only
     std::map<std::uint64_t, std::unordered_set<std::uint64_t>> voted_sequences_;  // by epoch, from the newest truth's on
     std::map<std::uint32_t, std::uint64_t> output_sequences_;                     // by voter
     std::vector<Waiting> waiting_;

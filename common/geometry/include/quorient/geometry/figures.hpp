@@ -27,16 +27,16 @@ std::optional<Accuracy> accuracy(const Axes& axes, AxisMask used = ~AxisMask{0})
 /// The smallest angle between two axes, taken as lines (0..pi/2) [rad]. Nothing for fewer than two axes.
 std::optional<double> minimum_angle_rad(const Axes& axes, AxisMask used = ~AxisMask{0});
 
-/// The minimal set of parity equations: V (q x n) in the triangular form of eq. (8) with V_ii^2 = W_ii - sum_k<i V_ki^2 (printed
-/// W_11) and zero pivots skipped, W = P. Columns of unused axes are zero. [Potter & Suman; paper 004, eq 8]
+/// The minimal set of parity equations: V (q x n) in the triangular form of eq. (8), with V_ii^2 = W_ii - sum_k<i V_ki^2 (the paper
+/// prints W_11), zero pivots skipped, W = P. Columns of unused axes are zero. [Potter & Suman; paper 004, eq 8]
 AxisMatrix parity_matrix(const ParitySpace& space);
 
 /// One parity equation per axis: row i is 1 at i and minus the least-squares prediction of axis i by the others elsewhere, so
 /// v_ij = W_ij / W_ii and the variance is sigma^2 / W_ii. Rows of axes that the others cannot predict are NaN. [eq 33]
 AxisMatrix parity_equations(const ParitySpace& space);
 
-/// The same with the other axes of one's own instrument left out of the prediction (their coefficients are 0): the unstated rule
-/// behind Tables 1-3 of paper 004, where one two-axis gyro fails as a whole.
+/// The same without the other axes of the axis's own instrument, whose coefficients are 0. Tables 1-3 of paper 004 follow this rule
+/// without stating it: there a two-axis gyro fails as a whole.
 AxisMatrix parity_equations_without_partners(const Axes& axes, std::span<const std::size_t> instrument);
 
 /// J_j = V_j' (V V')^-1 V_j = W_jj of the minimal set; NaN for unused axes and where nothing is redundant. [eq 20]

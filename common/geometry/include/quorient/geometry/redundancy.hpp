@@ -6,8 +6,8 @@
 
 namespace quorient::geometry {
 
-/// An axis closer than this (sine of the angle) to a plane lies in it, and a cluster flatter than this has no third dimension.
-/// A set of faults that hides behind it would have to be a million times the noise.
+/// An axis closer to a plane than this (sine of the angle) counts as lying in it, and a flatter cluster counts as a plane.
+/// Faults that this tolerance hides would have to be a million times the noise.
 inline constexpr double coplanar_tolerance = 1e-6;
 
 /// Rank of the rows in use: 3 where they span space.
@@ -25,7 +25,7 @@ unsigned detectable_with(const Axes& axes, AxisMask used = ~AxisMask{0});
 unsigned isolable_with(const Axes& axes, AxisMask used = ~AxisMask{0});
 
 /// The same where a fault takes a whole instrument: an instrument counts as lying in a plane if all its axes in use do.
-/// @param instrument  of each axis, n entries.
+/// @param instrument  instrument of each axis, n entries.
 unsigned detectable_instruments_with(const Axes& axes, std::span<const std::size_t> instrument, AxisMask used = ~AxisMask{0});
 unsigned isolable_instruments_with(const Axes& axes, std::span<const std::size_t> instrument, AxisMask used = ~AxisMask{0});
 

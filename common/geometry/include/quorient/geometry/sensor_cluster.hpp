@@ -26,9 +26,9 @@ using AxisMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::
 /// Guaranteed by construction: 3 to 24 axes, rank 3, every norm within 1e-4 of 1 (rows are used exactly as given).
 struct SensorCluster {
     Axes axes;                              ///< H
-    std::vector<std::size_t> instrument;    ///< of each axis
+    std::vector<std::size_t> instrument;    ///< instrument of each axis
     std::vector<std::string> instrument_name;
-    AxisVector sigma;    ///< of one increment's noise [rad; m/s]; 0 where unknown
+    AxisVector sigma;    ///< noise of one increment [rad; m/s]; 0 where unknown
     AxisVector quantum;  ///< [rad; m/s]; 0 = none
     AxisVector range;    ///< [rad/s; m/s^2]; 0 = none stated
     double interval_s = 0;

@@ -16,10 +16,10 @@ namespace quorient::recording {
 /// One sample of a log, in the units of the pipeline.
 struct RecordedFrame {
     std::int64_t time_ns = 0;                  ///< end of the interval, from the beginning of the log's first frame; strictly increasing
-    double interval_s = 0;                     ///< that this sample's increments stand for (not the gap before it)
+    double interval_s = 0;                     ///< time that this sample's increments stand for (without the gap before it)
     std::array<double, max_axes> increment{};  ///< gyros: rate x interval [rad]
     std::array<double, max_axes> acceleration_m_s2{};  ///< accelerometer axes, placed as the gyros'; 0 where the log has none
-    AxisMask valid_mask = 0;                           ///< of the gyro axes
+    AxisMask valid_mask = 0;                           ///< gyro axes with a value
     AxisMask acceleration_mask = 0;
     std::optional<std::array<double, 4>> truth;  ///< q_RB at the end of the interval (w,x,y,z)
     std::uint64_t lost_before = 0;               ///< samples missing or refused between the previous frame and this one
@@ -27,19 +27,19 @@ struct RecordedFrame {
     std::size_t axis_count = 0;
 };
 
-/// What a reader met so far. Every refused record is counted exactly once among the reasons.
+/// Counts of what a reader has read so far. Each refused record is counted once, under its reason.
 struct Statistics {
     std::uint64_t records = 0;  ///< complete records seen: packets or data lines, refused ones included
     std::uint64_t frames = 0;   ///< given out
     std::uint64_t checksum_failures = 0;
     std::uint64_t malformed = 0;        ///< a line with a bad or missing cell, a line too long
-    std::uint64_t lost = 0;             ///< records that the log's numbers or times say are missing
+    std::uint64_t lost = 0;             ///< records missing by the log's numbers or times
     std::uint64_t nan = 0;              ///< records with NaN or infinity
     std::uint64_t incomplete = 0;       ///< frames given out without one axis or more (not valid there)
     std::uint64_t repeated = 0;         ///< records with the time stamp or number of the one before
     std::uint64_t irregular = 0;        ///< records whose time step fits no whole number of intervals, or goes back
     std::uint64_t skipped_bytes = 0;    ///< passed over to find the next intact packet
-    std::uint64_t truncated_bytes = 0;  ///< at the end, of a record that was cut
+    std::uint64_t truncated_bytes = 0;  ///< at the end, belonging to a record that was cut
     std::int64_t duration_ns = 0;       ///< from the first to the last record
 };
 

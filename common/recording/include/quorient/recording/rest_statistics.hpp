@@ -4,10 +4,10 @@
 
 namespace quorient::recording {
 
-/// What a log's beginning says of its sensors while nothing moves.
+/// Bias and noise of the sensors, from a log's beginning while nothing moves.
 struct RestStatistics {
     std::array<double, max_axes> bias_rad_s{};
-    std::array<double, max_axes> sigma_rad{};  ///< of one increment at the mean interval, bias removed
+    std::array<double, max_axes> sigma_rad{};  ///< noise of one increment at the mean interval, bias removed
     std::uint64_t samples = 0;
     double duration_s = 0;
     std::array<double, max_axes> acceleration_m_s2{};  ///< mean of each accelerometer axis

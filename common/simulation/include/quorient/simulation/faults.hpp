@@ -34,10 +34,10 @@ tl::expected<FaultSpec, std::string> parse_fault(std::string_view text);
 /// The text that parse_fault reads back.
 std::string to_string(const FaultSpec& fault);
 
-/// The word of cli.md ("scale").
+/// The kind as text, e.g. "scale" (README.md lists all).
 std::string_view to_string(FaultKind kind);
 
-/// The order `inject` for a fault whose axes are resolved, and back; a command's times count from `now_s`.
+/// The command `inject` for a fault whose axes are resolved, and back. A command's times count from `now_s`.
 FaultCommand to_command(const FaultSpec& fault);
 FaultSpec from_command(const FaultCommand& command, double now_s);
 
@@ -45,16 +45,16 @@ FaultSpec from_command(const FaultCommand& command, double now_s);
 /// (rail needs a stated range, noise a sigma, delay at most delay_history_frames intervals).
 tl::expected<FaultSpec, std::string> resolve(const FaultSpec& fault, const geometry::SensorCluster& cluster);
 
-/// Applies faults to the frames of one instrument cluster, simulated, recorded or live: what leaves it is what a broken axis would send.
+/// Applies faults to the frames of one instrument cluster, simulated, recorded or live: its output is what a broken axis would send.
 ///
 /// A fault acts on a frame if the middle of the frame's interval lies in [start, end). Faults act in the order of their addition.
-/// `apply` must see every frame, in order (stuck and delay remember). It allocates nothing.
+/// `apply` must be given every frame, in order (stuck and delay need the past). It allocates nothing.
 class FaultInjector {
 public:
     static constexpr std::size_t delay_history_frames = 1024;
     static constexpr std::size_t capacity = 64;
 
-    /// @param seed  of the noise and dropout faults, which are functions of (seed, axis, sequence).
+    /// @param seed  for noise and dropout faults, which are functions of (seed, axis, sequence).
     FaultInjector(geometry::SensorCluster cluster, std::uint64_t seed);
 
     /// Faults that have ended make room. @returns an error as from resolve, or that all places are taken.
@@ -90,7 +90,7 @@ private:
     std::uint64_t seed_ = 0;
     std::vector<Active> faults_;
     double newest_s_ = -std::numeric_limits<double>::infinity();  ///< middle of the newest frame
-    std::array<double, max_axes> last_value_{};  // that left the injector
+    std::array<double, max_axes> last_value_{};                   // newest output of each axis
     AxisMask has_last_value_ = 0;
     std::vector<std::array<double, max_axes>> history_;  // ring of measured increments, newest at history_count_ - 1
     std::uint64_t history_count_ = 0;

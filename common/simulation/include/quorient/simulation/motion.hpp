@@ -39,7 +39,7 @@ struct Turn {
 /// Not guaranteed: at large angles the *body* rate reaches beyond the bandwidth (the angles do not).
 class RandomMotion {
 public:
-    static constexpr int harmonics = 8;  ///< of each angle
+    static constexpr int harmonics = 8;  ///< for each angle
 
     RandomMotion(double bandwidth_hz, double rms_rad_s, std::uint64_t seed);
 

@@ -47,8 +47,8 @@ struct VesselScenario {
     std::vector<std::string> channels;  ///< their names; empty: channel0, channel1, ...
     double rudder_rad = 0.01;           ///< amplitude of a sine
     double rudder_period_s = 20;
-    double rudder_lost_from_s = std::numeric_limits<double>::infinity();  ///< the rudder moves on, and nobody tells where it is,
-    double rudder_lost_to_s = std::numeric_limits<double>::infinity();    ///< until then
+    double rudder_lost_from_s = std::numeric_limits<double>::infinity();  ///< from here on the rudder moves unreported
+    double rudder_lost_to_s = std::numeric_limits<double>::infinity();    ///< end of that
     double interval_s = 0.01;
     double duration_s = 80;
     double noise = 0;  ///< standard deviation of every sample, in the channel's unit
@@ -62,8 +62,8 @@ geometry::SensorCluster channels_of(const VesselScenario& scenario);
 /// @returns what is wrong: sizes, figures, a fault on a channel that is not there.
 tl::expected<void, std::string> check(const VesselScenario& scenario);
 
-/// The vessel and its sensors, one frame per interval. Frame k is sampled at time k h, and holds sample times interval as increments
-/// (so that a mean rate is what they say), the rudder as known input (NaN while it is lost). The rudder is held over an interval; the
+/// The vessel and its sensors, one frame per interval. Frame k is sampled at time k h. An increment is the sample times the
+/// interval, so that it stands for a mean rate. The rudder is the known input (NaN while it is lost) and is held over an interval; the
 /// motion is exact.
 class SimulatedVessel {
 public:
