@@ -103,7 +103,7 @@ std::uint64_t roudi_life()
 {
     struct stat socket {};
     if (!roudi_answers() || ::stat(roudi_socket, &socket) != 0) return 0;
-    // The inode's number may be given again; the time of its making is not.
+    // The inode's number may be reused; its creation time is not.
     constexpr std::uint64_t second_ns = 1'000'000'000;
     return static_cast<std::uint64_t>(socket.st_ctim.tv_sec) * second_ns + static_cast<std::uint64_t>(socket.st_ctim.tv_nsec);
 }

@@ -103,7 +103,7 @@ TEST_P(VendorPairs, report_a_reader_that_asks_for_another_ownership)
     EXPECT_EQ(subscription.status().matched, 0U);
 }
 
-/// Fast DDS tells a node of its endpoints again after 1 s only; a Cyclone DDS node that it found first must not have to wait for that.
+/// Fast DDS repeats its endpoints to a node only after 1 s. A Cyclone DDS node that discovered it first must not have to wait for that.
 TEST_P(VendorPairs, find_each_other_at_once_most_times_whoever_was_there_first)
 {
     constexpr unsigned rounds = 20, required = 17;                   // a busy machine may be late now and then

@@ -55,7 +55,7 @@ using QosHandle = std::unique_ptr<dds_qos_t, QosDeleter>;
 
 constexpr dds_duration_t reliable_blocking = DDS_MSECS(100);
 
-/// As iceoryx is built (IOX_MAX_PUBLISHER_HISTORY): a writer that promises late joiners more silently goes by UDP.
+/// iceoryx's build limit (IOX_MAX_PUBLISHER_HISTORY). A writer that offers late joiners more silently uses UDP.
 constexpr std::int32_t iceoryx_history = 16;
 
 QosHandle to_qos(const Qos& qos, const WriterOptions* writer, Transport asked)
@@ -67,7 +67,8 @@ QosHandle to_qos(const Qos& qos, const WriterOptions* writer, Transport asked)
     dds_qset_history(q, DDS_HISTORY_KEEP_LAST, qos.depth);
     const auto kept = asked == Transport::iceoryx ? std::min(qos.depth, iceoryx_history) : qos.depth;
     if (qos.transient_local) dds_qset_durability_service(q, 0, DDS_HISTORY_KEEP_LAST, kept, -1, -1, -1);
-    if (qos.latched) dds_qset_history(q, DDS_HISTORY_KEEP_ALL, 0);  // keeps shared memory off; what a late joiner gets is set above
+    if (qos.latched)
+        dds_qset_history(q, DDS_HISTORY_KEEP_ALL, 0);  // KEEP_ALL keeps shared memory off; the depth for late joiners is set above
     if (qos.exclusive) {
         dds_qset_ownership(q, DDS_OWNERSHIP_EXCLUSIVE);
         if (writer) {
@@ -105,7 +106,7 @@ Transport transport_of(dds_entity_t endpoint)
     return dds_is_shared_memory_available(endpoint) ? Transport::iceoryx : Transport::udp;
 }
 
-/// A pool that is too small is told at the start, not by the first sample that is lost.
+/// Reports a memory pool that is too small at the start, not by the first lost sample.
 void check_room(dds_entity_t writer, const TopicSpec& topic)
 {
     void* sample = nullptr;
@@ -117,7 +118,8 @@ void check_room(dds_entity_t writer, const TopicSpec& topic)
     dds_return_loan(writer, &sample, 1);
 }
 
-/// What the settings ask for on this topic: latched ones stay off iceoryx by design, owned ones by their liveliness.
+/// The transport that the settings ask for on this topic. Latched topics never use iceoryx by design, exclusive ones because of their
+/// liveliness.
 Transport asked_for(const TopicSpec& topic, Transport asked)
 {
     return topic.qos.latched || topic.qos.exclusive || cyclonedds::is_ros2(topic.type) ? Transport::udp : asked;
@@ -154,7 +156,8 @@ public:
     }
 
 private:
-    /// Of a topic that nobody reads Cyclone DDS forgets the instance after each sample, and a thread of its own has that to clear away.
+    /// Without readers Cyclone DDS unregisters the instance after every sample and cleans up in a background thread. Registering it once
+    /// avoids that.
     bool keep_instance_of(const void* message)
     {
         dds_instance_handle_t kept = 0;
@@ -270,13 +273,13 @@ private:
     std::map<std::string, dds_entity_t> topics_;
 };
 
-/// Of one host and domain, by RTPS's ports [RTPS 9.6.1.1]. Unicast discovery knocks at each of them, so it looks for fewer.
+/// Most participants of one host and domain by RTPS's ports [RTPS 9.6.1.1]. Unicast discovery sends to each port, so it probes fewer.
 constexpr std::uint32_t most_participants = 119;
 
-/// Cyclone DDS 0.10 takes every node with the same MAC address for one that shares its memory, and gives each topic's name to iceoryx
-/// without its domain. A reader is then handed the samples of other domains too; it can do nothing with them, does not give them back, and
-/// is deaf after 256. So the name has the domain here, and the address (16 octets) stands for the daemon: with any other node it goes by
-/// UDP.
+/// Cyclone DDS 0.10 assumes that every node with the same MAC address shares its memory, and passes topic names to iceoryx without the
+/// domain. A reader then receives the samples of other domains too. It cannot use them, does not return them, and receives nothing more
+/// after 256. So the topic prefix holds the domain here, and the address (16 octets) identifies the daemon: all other nodes are reached
+/// by UDP.
 std::string shared_memory(std::uint32_t domain, bool shared)
 {
     if (!shared) return "<SharedMemory><Enable>false</Enable></SharedMemory>";
@@ -290,8 +293,8 @@ std::string shared_memory(std::uint32_t domain, bool shared)
         address, domain);
 }
 
-/// As Cyclone wants it. GenerateKeyhash: without it Fast DDS does not see a Cyclone endpoint leave. The short heartbeat and
-/// nack delays repair a lost sample before anybody's patience ends.
+/// Cyclone's configuration. Without GenerateKeyhash Fast DDS does not notice that a Cyclone endpoint leaves. The short heartbeat and NACK
+/// delays repair a lost sample before any consumer's patience ends.
 std::string configuration(const Settings& settings, bool shared)
 {
     std::string interface;

@@ -6,7 +6,7 @@
 
 namespace quorient::bus::cyclonedds {
 
-/// ROS 2's types have texts and lists: their C structs are not the plain ones, and samples are converted.
+/// ROS 2's types have strings and sequences. Their C structs differ from the plain ones, so samples are converted.
 bool is_ros2(TypeId type);
 
 const dds_topic_descriptor_t& ros2_descriptor_of(TypeId type);

@@ -67,7 +67,7 @@ TEST(Contract, states_the_type_key_and_quality_of_service_of_every_topic)
         EXPECT_EQ(policies, spelled(topic.qos));
     };
     std::apply([&](const auto&... topic) { (compare(topic.spec), ...); }, topics::all);
-    EXPECT_EQ(rows.size(), std::tuple_size_v<decltype(topics::all)>) << "the table lists a topic that nobody speaks of";
+    EXPECT_EQ(rows.size(), std::tuple_size_v<decltype(topics::all)>) << "the table lists a topic that the code does not have";
 }
 
 }  // namespace

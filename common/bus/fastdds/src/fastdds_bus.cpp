@@ -65,8 +65,8 @@ void apply(const Qos& qos, const Settings& settings, EndpointQos& endpoint)
     if (!shares_memory(settings)) endpoint.data_sharing().off();
 }
 
-/// Whether Fast DDS really opened its shared memory: it goes on by UDP, and says nothing, where it could not. Only a reader can be asked:
-/// a writer's list of sending locators leaves shared memory out.
+/// Whether Fast DDS really opened its shared memory: if it could not, it silently continues by UDP. Only a reader shows it, because a
+/// writer's list of sending locators omits shared memory.
 Transport transport_of(const dds::DataReader& reader)
 {
     rtps::LocatorList locators;
@@ -77,7 +77,7 @@ Transport transport_of(const dds::DataReader& reader)
     return Transport::udp;
 }
 
-/// Of all endpoints of a participant alike.
+/// The same for all endpoints of a participant.
 struct Transports {
     Transport in_use;
     Transport asked;
@@ -217,7 +217,7 @@ public:
     Transport transport() const { return transports_.in_use; }
 
 private:
-    /// As a reader made for this question knows it.
+    /// Found by a temporary reader.
     Transport transport_in_use()
     {
         auto [type, entity] = topic_of(topics::status.spec);
@@ -256,7 +256,7 @@ private:
         apply(topic.qos, settings_, qos);
         qos.reliable_reader_qos().times.heartbeatResponseDelay = seconds(0);
         if (topic.qos.exclusive) {
-            // Fast DDS watches a writer by the reader's own lease alone: with the default, infinite, an owner that died stays the owner.
+            // Fast DDS monitors a writer by the reader's own lease alone. With the infinite default a dead owner stays the owner.
             qos.liveliness().kind = dds::MANUAL_BY_TOPIC_LIVELINESS_QOS;
             qos.liveliness().lease_duration = seconds(settings_.voted_lease_s);
         }

@@ -10,7 +10,7 @@ constexpr std::uint8_t acknack = 0x06;
 constexpr std::uint8_t final_flag = 0x02;
 constexpr std::uint16_t vendor_eprosima = 0x010f;
 
-/// Places in an ACKNACK's content [RTPS 9.4.5.3]: reader, writer, base and size of a set, its words, a count.
+/// Places in an ACKNACK's content [RTPS 9.4.5.3]: reader, writer, base and size of a set, its bitmap, a count.
 constexpr std::size_t writer_kind = 7;
 constexpr std::size_t base = 8;
 constexpr std::size_t number_of_bits = 16;

@@ -7,14 +7,14 @@
 
 namespace quorient::bus::fastdds {
 
-/// A datagram of another vendor, with those of its acknowledgements [RTPS 9.4.5.3] that are for built-in writers told as Fast DDS
-/// understands them: counted from 1, and one that has heard nothing yet (base 1, nothing asked for, an answer wanted) with base 0.
+/// A datagram of another vendor, with its ACKNACKs [RTPS 9.4.5.3] to built-in writers rewritten into the form to which Fast DDS replies:
+/// counted from 1, and with base 0 from a reader that has received nothing yet (base 1, nothing requested, an answer wanted).
 /// @param data  a datagram that `is_sound_rtps`
-/// @returns nothing where it can go on as it is.
+/// @returns nothing where the datagram needs no change.
 ///
-/// Why: Cyclone DDS answers no heartbeat of a node that it does not know yet. Once it knows it, it asks for another, with count 0. Fast DDS
-/// 2.9.1 takes only counts above 0, and answers at once only to base 0; its own next heartbeat comes up to 1 s later. Until then neither
-/// knows the endpoints of the other side, and a standby does not hear whom it stands by for.
+/// Why: Cyclone DDS ignores heartbeats of a node that it has not discovered. After discovery it requests one with count 0. Fast DDS 2.9.1
+/// accepts only counts above 0, and replies at once only to base 0; its own next heartbeat follows up to 1 s later. Until then neither side
+/// knows the other's endpoints, and a standby voter does not receive the voter that it stands by for.
 std::optional<std::vector<std::uint8_t>> with_understood_acknacks(const std::uint8_t* data, std::size_t size);
 
 }  // namespace quorient::bus::fastdds

@@ -27,7 +27,7 @@ struct GuardedDescriptor final : rtps::ChainingTransportDescriptor {
     Listening listening;
 };
 
-/// Says of each address that is about to be sent to, before it is.
+/// Called with each address before the first datagram is sent to it.
 template <class Announce>
 class Announcing final : public LocatorsIterator {
 public:
@@ -79,9 +79,9 @@ public:
     }
 
 private:
-    /// Fast DDS 2.9.1 as packaged (statistics and assertions on) counts per address, and aborts on the first datagram to one for which no
-    /// channel was opened: an endpoint of a node that announces another address than that node did, be it damaged or by design
-    /// [eProsima/Fast-DDS issue 3285]. Opening one enters it; the channel itself, a socket, is not needed. Sends are serialised above.
+    /// Fast DDS 2.9.1 as packaged (statistics and assertions on) counts per address. It aborts on the first datagram to an address without
+    /// an open channel: an endpoint that announces another address than its node did, by damage or by design [eProsima/Fast-DDS issue
+    /// 3285]. Opening a channel registers the address; the channel itself, a socket, is not needed. Sends are serialised above.
     void know(const Locator_t& locator)
     {
         if (!known_.insert(locator).second) return;

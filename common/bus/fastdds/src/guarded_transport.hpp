@@ -6,12 +6,12 @@
 
 namespace quorient::bus::fastdds {
 
-/// Whether the process can hear answers.
+/// Whether the process already receives answers.
 using Listening = std::shared_ptr<std::atomic<bool>>;
 
-/// A transport around another one, that lets only sound RTPS datagrams in (rtps_guard.hpp), with acknowledgements as Fast DDS understands
-/// them (foreign_acknacks.hpp), and nothing out before the process listens: Fast DDS 2.9.1 announces itself a moment before it does, the
-/// answer of a Cyclone DDS node comes at once and is lost, and its next one comes 1 s later.
+/// A transport around another one. Inwards it passes only sound RTPS datagrams (rtps_guard.hpp), with ACKNACKs in the form that Fast DDS
+/// expects (foreign_acknacks.hpp). Outwards it passes nothing before the process listens. Fast DDS 2.9.1 announces itself a moment too
+/// early: the immediate answer of a Cyclone DDS node is then lost, and its next one comes 1 s later.
 std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> guarded(
     std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> transport, Listening listening);
 

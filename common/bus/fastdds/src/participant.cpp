@@ -19,7 +19,7 @@ namespace rtps = eprosima::fastdds::rtps;
 
 namespace {
 
-/// Of one participant: its segment of 512 KiB, its ports, and theirs whom it writes to; generously.
+/// One participant's share, generously: its segment of 512 KiB, its ports, and the ports of its peers.
 constexpr std::uintmax_t shared_memory_needed = 4 << 20;
 
 /// Where the participants of an address listen for discovery [RTPS 9.6.1.1]: participant p at 7400 + 250 domain + 10 + 2 p.
@@ -33,7 +33,7 @@ void add_peer(const std::string& address, const Settings& settings, eprosima::fa
     }
 }
 
-/// Multicast discovery goes on beside the list.
+/// Multicast discovery continues beside the list.
 void add_multicast(std::uint32_t domain, eprosima::fastrtps::rtps::LocatorList_t& peers)
 {
     eprosima::fastrtps::rtps::Locator_t locator;
@@ -42,8 +42,8 @@ void add_multicast(std::uint32_t domain, eprosima::fastrtps::rtps::LocatorList_t
     peers.push_back(locator);
 }
 
-/// On several networks: the own addresses in an order that does not change. Cyclone DDS 0.10 sends to the first one alone. Without ports
-/// Fast DDS fills in those of the participant.
+/// On several networks: the own addresses in a fixed order, because Cyclone DDS 0.10 sends to the first one alone. Fast DDS fills in the
+/// participant's ports.
 void announce_in_order(dds::WireProtocolConfigQos& wire)
 {
     for (const auto& address : own_addresses()) {
@@ -54,16 +54,16 @@ void announce_in_order(dds::WireProtocolConfigQos& wire)
     }
 }
 
-/// Every second, and a little more for some processes than for others: each goes to all places of all peers, and those of a system that was
-/// started at once would go out at once, too.
+/// One second, and a little more, different from process to process. Each announcement goes to all ports of all peers, so processes that
+/// start together would otherwise all announce at the same moment.
 double announcement_period_s()
 {
     constexpr int paces = 64;
     return 1 + 0.25 * (getpid() % paces) / paces;
 }
 
-/// Linux's own default. It must be stated: behind another transport Fast DDS 2.9.1 takes what is not stated for 0, holds the buffer for
-/// full after every sample, and asks each reader to acknowledge it.
+/// Linux's default, which must be stated here: behind another transport Fast DDS 2.9.1 reads an unstated size as 0, assumes a full buffer
+/// after every sample, and asks each reader to acknowledge it.
 constexpr std::uint32_t send_buffer = 212'992;
 
 void add_transports(const Settings& settings, Listening listening, dds::TransportConfigQos& transports)
@@ -108,7 +108,7 @@ dds::DomainParticipant* join(const Settings& settings)
     const auto listening = std::make_shared<std::atomic<bool>>(false);
     add_transports(settings, listening, qos.transport());
     auto& builtin = qos.wire_protocol().builtin;
-    // Peers that start together find each other without waiting for the 3 s announcement; the first goes nowhere (guarded_transport.hpp).
+    // Peers that start together discover each other without the 3 s announcement. The first one is dropped (guarded_transport.hpp).
     builtin.discovery_config.initial_announcements.count = 50;
     builtin.discovery_config.initial_announcements.period = seconds(0.02);
     builtin.discovery_config.leaseDuration_announcementperiod = seconds(announcement_period_s());

@@ -14,11 +14,11 @@ eprosima::fastrtps::Duration_t seconds(double s);
 
 bool shares_memory(const Settings& settings);
 
-/// Shared memory only where there is room for it: without, Fast DDS would be ended by SIGBUS at its first sample.
+/// Checks the room for shared memory. Without room Fast DDS would be ended by SIGBUS at its first sample.
 /// @returns `settings`, by UDP alone where shared memory was preferred; an explanation where it was required.
 tl::expected<Settings, std::string> with_room_in_shared_memory(Settings settings);
 
-/// A participant as the settings say: its transports, the addresses it announces and looks at, the pace of its discovery.
+/// A participant with the transports, announced addresses, peers and discovery periods of the settings.
 /// @returns null if the domain cannot be joined.
 eprosima::fastdds::dds::DomainParticipant* join(const Settings& settings);
 

@@ -6,7 +6,7 @@
 
 namespace quorient::bus::fastdds {
 
-/// ROS 2's types have texts and lists: their classes are not the plain structs, and samples are converted.
+/// ROS 2's types have strings and sequences. Their classes differ from the plain structs, so samples are converted.
 bool is_ros2(TypeId type);
 
 eprosima::fastdds::dds::TypeSupport ros2_type_support_of(TypeId type);

@@ -19,10 +19,10 @@ constexpr std::uint16_t sentinel = 0x0001;
 constexpr std::uint8_t statistics = 0x80;
 constexpr std::size_t statistics_size = 56;
 
-/// A gap is walked number by number, and numbers that are not the next expected are kept one by one. Writers here keep far fewer samples.
+/// Fast DDS walks a gap number by number and stores unexpected numbers one by one. Writers here keep far fewer samples.
 constexpr std::int64_t longest_gap = 65'536;
 
-/// Memory for the whole sample is taken on its first fragment. Samples here are far smaller: any fits in one datagram.
+/// Fast DDS allocates the whole sample on its first fragment. Samples here are far smaller: each fits in one datagram.
 constexpr std::uint32_t largest_sample = 65'536;
 
 /// The form of data that describes participants and endpoints: a list of parameters.
@@ -63,8 +63,8 @@ bool fits(const Submessage& content, std::size_t place, std::size_t length)
     return length >= 4 && content.word(place + 4) <= (length - 4) / counted->element_size;
 }
 
-/// @returns where the list of parameters that begins there [RTPS 9.4.2.11] ends; nothing where that is not in the same submessage, or one
-/// of them promises more than it holds.
+/// @returns the end of the parameter list that begins there [RTPS 9.4.2.11]. Nothing where it is outside the submessage, or a parameter
+/// claims more than it holds.
 std::optional<std::size_t> end_of_parameters(const Submessage& content, std::size_t place)
 {
     while (place + 4 <= content.size()) {
@@ -76,16 +76,16 @@ std::optional<std::size_t> end_of_parameters(const Submessage& content, std::siz
     return std::nullopt;
 }
 
-/// What describes a participant or an endpoint, behind the four octets that tell its form.
+/// The description of a participant or an endpoint, behind the four octets of its encapsulation.
 bool is_sound_description(const Submessage& content, std::size_t place)
 {
-    if (place + 4 > content.size()) return true;  // none: it leaves
+    if (place + 4 > content.size()) return true;  // no description: the endpoint leaves
     const std::uint8_t form = content.octet(place + 1);
     if (form != parameter_list_big_endian && form != parameter_list_little_endian) return true;
     return end_of_parameters(content.in_order(form == parameter_list_little_endian), place + 4).has_value();
 }
 
-/// [RTPS 9.4.5.4, 9.4.5.5]: flags, how far it is from here to the inline QoS, reader, writer, number.
+/// [RTPS 9.4.5.4, 9.4.5.5]: flags, offset of the inline QoS, reader, writer, number.
 bool is_sound_data(const Submessage& content, std::uint8_t id, std::uint8_t flags)
 {
     if (content.size() < 20) return false;
@@ -99,7 +99,7 @@ bool is_sound_data(const Submessage& content, std::uint8_t id, std::uint8_t flag
     return !describes || is_sound_description(content, place);
 }
 
-/// [RTPS 9.4.5.5]: flags, reader, writer, number, and which fragments of what size of a sample of what size.
+/// [RTPS 9.4.5.5]: flags, reader, writer, number, fragments, fragment size, sample size.
 bool is_sound_fragment(const Submessage& content)
 {
     return content.size() >= 32 && content.word(28) <= largest_sample;
@@ -116,8 +116,8 @@ bool is_sound_rtps(const std::uint8_t* bytes, std::size_t size)
         const std::size_t left = size - place - submessage_header_size;
         if (length > left) return false;
         if (id == statistics) return length == statistics_size && length == left;
-        // Of the others a length of 0 means "to the end", which only what is longer than a datagram needs; Fast DDS's two parsers differ
-        // there.
+        // In all others a length of 0 means "to the end", which only submessages longer than a datagram need. Fast DDS's two parsers
+        // disagree there.
         if (length == 0 && !may_be_empty(id) && left != 0) return false;
         const Submessage content(bytes + place + submessage_header_size, length, little);
         if (id == gap && !is_sound_gap(content)) return false;

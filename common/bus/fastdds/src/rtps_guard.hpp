@@ -10,12 +10,13 @@ namespace quorient::bus::fastdds {
 /// endpoints, that end in their submessage and hold as many elements as they say; gaps of at most 65536 numbers and fragments of samples of
 /// at most 64 KiB.
 ///
-/// Why: Fast DDS 2.9.1 as packaged (statistics and assertions on) aborts the process on a datagram whose statistics submessage has
-/// another length; where inline QoS reaches beyond its submessage it takes the size of the payload behind it for gigabytes and clears
-/// them; where an endpoint claims four thousand million data representations it makes room for them; it keeps the numbers of a gap one by
-/// one, and takes the memory for a whole sample on its first fragment, whoever sent them. What is refused here never reaches its parser. A
-/// true writer's longer gap would be refused too; by the protocol its next heartbeat says the same (not tried: writers here keep far fewer
-/// samples).
+/// Why: Fast DDS 2.9.1 as packaged (statistics and assertions on) trusts such datagrams.
+/// - A statistics submessage of another length aborts the process.
+/// - Inline QoS that reaches beyond its submessage makes the payload size negative, and gigabytes are cleared.
+/// - An endpoint that claims four thousand million data representations makes it allocate them.
+/// - It stores the numbers of a gap one by one, and allocates a whole sample on its first fragment.
+/// What is refused here never reaches its parser. A real writer's longer gap would be refused too; by the protocol its next heartbeat
+/// repeats it (not tested: writers here keep far fewer samples).
 bool is_sound_rtps(const std::uint8_t* data, std::size_t size);
 
 }  // namespace quorient::bus::fastdds

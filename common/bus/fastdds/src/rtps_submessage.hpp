@@ -5,7 +5,7 @@
 
 namespace quorient::bus::fastdds {
 
-inline constexpr std::size_t header_size = 20;  ///< of a datagram [RTPS 9.4.4]
+inline constexpr std::size_t header_size = 20;  ///< header of a datagram [RTPS 9.4.4]
 inline constexpr std::size_t submessage_header_size = 4;
 
 struct SubmessageHeader {
@@ -24,7 +24,7 @@ inline SubmessageHeader submessage_header_at(const std::uint8_t* bytes)
     return {bytes[0], bytes[1], little, little ? first | second << 8U : first << 8U | second};
 }
 
-/// Of these a length of 0 means that they are empty; of all others that they reach to the datagram's end.
+/// A length of 0 means "empty" for these, and "up to the datagram's end" for all others.
 inline bool may_be_empty(std::uint8_t id)
 {
     constexpr std::uint8_t pad = 0x01;
@@ -32,7 +32,7 @@ inline bool may_be_empty(std::uint8_t id)
     return id == pad || id == info_timestamp;
 }
 
-/// Whether this last octet of an entity's id is of one that describes participants and endpoints [RTPS 9.3.1.2].
+/// Whether this last octet of an entity's id belongs to an entity that describes participants and endpoints [RTPS 9.3.1.2].
 inline bool is_builtin(std::uint8_t entity_kind)
 {
     constexpr std::uint8_t builtin_entity = 0xc0;

@@ -5,8 +5,8 @@
 
 namespace quorient::bus::fastdds {
 
-/// A generated type whose decoder refuses what is no CDR. Fast DDS's own throws on a wrong encapsulation, through the reader, into
-/// whoever takes a sample: one damaged datagram would end the process.
+/// A generated type whose decoder refuses invalid CDR. Fast DDS's own decoder throws on a wrong encapsulation, through the reader into the
+/// caller that takes a sample: one damaged datagram would end the process.
 template <class PubSubType>
 class TolerantType final : public PubSubType {
 public:

@@ -28,7 +28,7 @@ void append_word(Datagram& datagram, std::uint32_t value, bool little)
     for (unsigned i = 0; i < 4; ++i) datagram.push_back(static_cast<std::uint8_t>(value >> (little ? 8 * i : 24 - 8 * i)));
 }
 
-/// Of RTPS 2.1, from this vendor.
+/// Header of RTPS 2.1 from this vendor.
 Datagram header_of(std::uint16_t vendor)
 {
     Datagram datagram(20, 0x55);

@@ -45,7 +45,7 @@ Datagram with_statistics(std::uint8_t length)
     return datagram;
 }
 
-/// Of one submessage, in either byte order: words in the sender's order.
+/// One submessage in either byte order; its integers are in the sender's order.
 Datagram with_words(std::uint8_t id, bool little, const std::vector<std::uint32_t>& words)
 {
     Datagram datagram{'R', 'T', 'P', 'S', 2, 3, 1, 15};
@@ -138,7 +138,7 @@ TEST(RtpsGuard, refuses_descriptions_of_endpoints_that_promise_more_than_they_ho
         EXPECT_FALSE(sound(with_description(subscriptions_writer, little, data_representation, 0xFFFF'FFFF)));
         EXPECT_FALSE(sound(with_description(subscriptions_writer, little, 0x4000U | data_representation, 3))) << "must be understood";
         EXPECT_TRUE(sound(with_description(subscriptions_writer, little, 0x1d, 0xFFFF'FFFF))) << "no count, but a time";
-        EXPECT_TRUE(sound(with_description(some_writer, little, data_representation, 3))) << "somebody's sample";
+        EXPECT_TRUE(sound(with_description(some_writer, little, data_representation, 3))) << "an ordinary sample";
     }
 }
 

@@ -1,4 +1,4 @@
-// The generated classes hide their members; their accessors tell where they lie.
+// The generated classes hide their members; their accessors show the members' places.
 
 #include "../src/types.hpp"
 #include "quorient/messages/fields.hpp"

@@ -13,7 +13,7 @@ namespace {
 
 using Sample = std::vector<std::byte>;
 
-/// One topic: who listens, and what a late joiner gets.
+/// One topic: its readers, and the history for late joiners.
 struct Channel {
     std::vector<std::deque<Sample>*> queues;
     std::deque<Sample> history;
@@ -98,7 +98,7 @@ class LocalBus final : public Bus {
 public:
     explicit LocalBus(std::shared_ptr<LocalHub::State> state) : state_(std::move(state)) {}
 
-    /// Nobody else can write while this thread waits, and time is virtual here: there is nothing to wait for.
+    /// No other thread can write meanwhile, and time is virtual: there is nothing to wait for.
     void wait(std::int64_t) override {}
     Vendor vendor() const override { return Vendor::local; }
 

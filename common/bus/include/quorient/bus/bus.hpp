@@ -13,7 +13,7 @@
 
 namespace quorient::bus {
 
-/// A vendor refused to make an entity: an environment's fault, at start-up only.
+/// A vendor refused to create an entity. A fault of the environment, at start-up only.
 class Error : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -21,20 +21,20 @@ class Error : public std::runtime_error {
 /// How an endpoint stands with its peers.
 struct EndpointStatus {
     std::uint32_t matched = 0;
-    std::uint32_t incompatible = 0;            ///< peers that asked for a QoS that this endpoint does not have, in total
+    std::uint32_t incompatible = 0;            ///< peers with an incompatible QoS, in total
     std::string_view policy{};                 ///< name of the policy of the latest of them
     Transport transport = Transport::unknown;  ///< really in use at this end; a peer without it is served by UDP
-    Transport asked = Transport::unknown;      ///< by the settings, for a topic like this one
+    Transport asked = Transport::unknown;      ///< requested by the settings for such a topic
     std::uint64_t refused = 0;                 ///< samples that the vendor did not take from us, in total
 };
 
-/// What a vendor implements. One thread uses a bus and all that it made.
+/// Implemented by each vendor. One thread uses a bus and everything that it made.
 class Writer {
 public:
     virtual ~Writer() = default;
     /// @param message  the plain struct of the topic. @returns false where the vendor refused it.
     virtual bool write(const void* message) = 0;
-    /// Says that this writer is alive (exclusive topics).
+    /// Asserts this writer's liveliness (exclusive topics).
     virtual void assert_liveliness() {}
     virtual EndpointStatus status() = 0;
 };
@@ -96,8 +96,8 @@ public:
 
     virtual Vendor vendor() const = 0;
 
-    /// Whether the shared memory that this bus joined has lost its daemon. Samples go on between those who share it already; who starts
-    /// later is not among them.
+    /// Whether the shared memory that this bus joined has lost its daemon. Processes that share it already keep exchanging samples; a
+    /// process that starts later does not join them.
     virtual bool shared_memory_lost() const { return false; }
 
 private:
@@ -105,7 +105,7 @@ private:
     virtual std::unique_ptr<Reader> make_reader(const TopicSpec& topic) = 0;
 };
 
-/// Joins the bus that `settings` names. Vendor::local makes a bus that nobody else shares (see local_bus.hpp for a shared one).
+/// Joins the bus that `settings` names. Vendor::local makes a bus of its own (see local_bus.hpp for a shared one).
 /// @returns every problem found before the vendor is touched, or the vendor's own refusal, one per line.
 tl::expected<std::unique_ptr<Bus>, std::string> open(const Settings& settings);
 

@@ -10,8 +10,8 @@ namespace quorient::bus {
 /// (containers know their subnets, not their interfaces' names). Empty where there is none.
 std::vector<std::string> addresses_of(std::string_view which);
 
-/// This host's IPv4 addresses but loopback, the lowest first: the kernel's own order differs from start to start where two networks come
-/// up together, as a container's do.
+/// This host's IPv4 addresses except loopback, in ascending order. The kernel's order differs from start to start if two networks come up
+/// together, as in a container.
 std::vector<std::string> own_addresses();
 
 /// The names of all interfaces that have an IPv4 address.

@@ -4,7 +4,7 @@
 
 namespace quorient::bus::ros2 {
 
-/// sensor_msgs/Imu. Texts and lists have bounds here; what a foreign node sends beyond them is cut.
+/// sensor_msgs/Imu. Strings and sequences have bounds here; longer ones of a foreign node are cut.
 struct Imu {
     std::int64_t stamp_ns = 0;  ///< since 1970
     Name<64> frame_id{};
@@ -42,13 +42,13 @@ struct DiagnosticArray {
     std::array<DiagnosticStatus, max_diagnostics> status{};
 };
 
-/// Of a writer: RELIABLE serves readers of ROS 2's sensor-data profile (BEST_EFFORT) and of its default profile (RELIABLE) alike.
+/// For writers: RELIABLE matches readers of ROS 2's sensor-data profile (BEST_EFFORT) and of its default profile (RELIABLE).
 inline constexpr Qos offered{.reliable = true, .depth = 10};
 
-/// Of a reader: BEST_EFFORT hears writers of either profile.
+/// For readers: BEST_EFFORT matches writers of either profile.
 inline constexpr Qos requested{.reliable = false, .depth = 64};
 
-/// @param name  as DDS knows it, with ROS 2's prefix: "rt/imu/data". Must outlive the topic.
+/// @param name  DDS name with ROS 2's prefix: "rt/imu/data". Must outlive the topic.
 constexpr Topic<Imu> imu(const char* name, const Qos& qos)
 {
     return {name, TypeId::ros2_imu, qos};

@@ -32,13 +32,13 @@ enum class TypeId : std::size_t {
     ros2_imu,
     ros2_diagnostics,
 };
-inline constexpr std::size_t type_count = 10;  ///< of the IDL
+inline constexpr std::size_t type_count = 10;  ///< types in the IDL
 
 /// A topic as a vendor's bus sees it.
 struct TopicSpec {
     const char* name;
     TypeId type;
-    std::size_t size;  ///< of the plain struct
+    std::size_t size;  ///< size of the plain struct
     Qos qos;
 };
 
@@ -60,7 +60,7 @@ inline constexpr Topic<TruthState> truth{"quorient/truth", TypeId::truth_state, 
 inline constexpr Topic<FaultVerdict> verdict{"quorient/verdict", TypeId::fault_verdict, {.transient_local = true}};
 inline constexpr Topic<AttitudeState> attitude{"quorient/attitude", TypeId::attitude_state, {.transient_local = true}};
 inline constexpr Topic<VotedAttitude> voter_output{"quorient/voter_output", TypeId::voter_output, {.transient_local = true}};
-// No history: a late reader would be given that of the weaker voters too, behind what it has read already.
+// No history: a late reader would also receive the weaker voters' history, behind frames that it has already read.
 inline constexpr Topic<VotedAttitude> voted{"quorient/voted", TypeId::voted_attitude, {.exclusive = true}};
 inline constexpr Topic<HealthEvent> event{"quorient/event", TypeId::health_event, {.transient_local = true, .depth = 256, .latched = true}};
 inline constexpr Topic<ServiceStatus> status{"quorient/status", TypeId::service_status, {.reliable = false, .depth = 8}};
