@@ -43,7 +43,7 @@ double steady_s()
 
 struct Options {
     unsigned domain;
-    double lease_s;  ///< of `voted`: a reader must not ask for less than the voters offer
+    double lease_s;  ///< lease of `voted`: a reader must not request less than the voters offer
     std::vector<std::string> peers;
     std::uint32_t participants_per_host;
 };
@@ -215,7 +215,7 @@ DataReaderQos reliable(int depth)
     return qos;
 }
 
-/// Of several voters, DDS shows the owner's samples, and the next one's once the owner's lease has run out.
+/// DDS delivers the samples of the voter that owns `voted`, and those of the next one once the owner's lease has run out.
 DataReaderQos owned(double lease_s)
 {
     auto qos = reliable(64);

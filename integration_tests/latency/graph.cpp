@@ -30,7 +30,7 @@ struct Options {
     std::string role;
     std::string dds = "cyclonedds";
     RawSettings raw;
-    std::uint32_t number = 0;  ///< of the lane or voter
+    std::uint32_t number = 0;  ///< lane or voter
     std::uint32_t lanes = 3;
     std::uint32_t voters = 2;
     double rate_hz = 200;
@@ -127,7 +127,7 @@ void run_integrator(Raw& raw, const Options& options)
     FaultVerdict verdict;
     AttitudeState attitude;
     attitude.lane = options.number;
-    std::array<Stamps, 1024> stamps{};  // of verdicts by sequence, as a ring
+    std::array<Stamps, 1024> stamps{};  // ring of the verdicts' stamps, by sequence
     std::uint64_t frame_count = 0;
     std::uint64_t verdict_count = 0;
     std::uint64_t answered = 0;

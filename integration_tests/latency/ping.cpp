@@ -187,7 +187,7 @@ struct Options {
     std::uint32_t domain = 30;
     double rate_hz = 1000;
     int rounds = 5;
-    int per_round = 400;  ///< of each path
+    int per_round = 400;  ///< for each path
     int turn = 20;        ///< round trips of one path before the next has its turn
     bool spin = false;    ///< the paths by DDS
 };
@@ -293,7 +293,8 @@ nlohmann::json measure(const Options& options, Shared& shared, std::vector<Named
         auto due = std::chrono::steady_clock::now();
         for (int turn = 0; turn < (round < 0 ? 3 : options.per_round / options.turn); ++turn) {
             for (std::size_t place = 0; place < paths.size(); ++place) {
-                // There and back: who follows whom (and finds the vendor's code in the cache) changes from turn to turn.
+                // Forwards and backwards: the order (and with it which path finds the vendor's code in the cache) changes from turn to
+                // turn.
                 const auto i = turn % 2 == 0 ? place : paths.size() - 1 - place;
                 shared.turn = i;
                 for (int k = 0; k < options.turn; ++k) {

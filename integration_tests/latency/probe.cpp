@@ -47,7 +47,7 @@ constexpr std::array hops{
     HopName{"sensor_to_voted", Hop::sensor, Hop::voter_out},
 };
 
-/// @param sent  frames that the sensors say they published, 0 where none speaks.
+/// @param sent  frames published by the sensors' status, 0 where there is none.
 nlohmann::json report(const std::vector<Record>& records, std::uint64_t skipped, double interval_s, std::uint64_t sent)
 {
     nlohmann::json result;

@@ -27,9 +27,9 @@ PAGE_MIB = os.sysconf("SC_PAGE_SIZE") / 2**20
 PING_PATIENCE_S = 60  # all rounds of one pair of processes; they take some seconds
 START_PATIENCE_S = 15
 UNITS_SECONDS = 6  # many processes start slowly
-LADDER_SECONDS = 8  # of which the probe may miss two
+LADDER_SECONDS = 8  # the probe may miss two of them
 LOOK_S = 0.5  # a look at nine processes takes 0.3 to 0.9 ms
-CPUCLOCK_SCHED = 2  # of the CPU-time clock of a process: MAKE_PROCESS_CPUCLOCK of the kernel's posix-timers.h
+CPUCLOCK_SCHED = 2  # CPU-time clock of a process: MAKE_PROCESS_CPUCLOCK of the kernel's posix-timers.h
 DOMAINS = 16  # used in turns: the one before may still be saying goodbye
 FLOORS = ("floor", "floor_that_waits")
 PROGRAMS = ("quorient-latency-graph", "quorient-latency-probe", "quorient-latency-ping")
@@ -80,7 +80,7 @@ def cpu_s(process):
 
 
 class Usage:
-    """CPU and memory of processes, looked at from time to time; what lies between two looks is told for a time of one's own."""
+    """CPU and memory of processes, sampled from time to time, and interpolated to any time between two samples."""
 
     def __init__(self, processes):
         self.processes = processes
@@ -166,7 +166,7 @@ class Runner:
         self.skipped = []
 
     def out_of_time(self, what):
-        """@returns whether this is to be left out; it is told in the results."""
+        """@returns whether this is to be left out; the results list it."""
         if time.monotonic() < self.deadline:
             return False
         self.skipped.append(what)
@@ -229,7 +229,7 @@ class Runner:
         return self.options.domain + (self.domain - self.options.domain + steps) % DOMAINS
 
     def once(self, who, case, seconds):
-        """A run that fails is told, and costs no other."""
+        """A run that fails is reported, and the others continue."""
         self.domain = self.next_domain(1)
         try:
             return getattr(self, who)(case, seconds)

@@ -158,7 +158,7 @@ private:
     bus::Subscription<Message> subscription_;
 };
 
-/// A vendor's bus whose calls are told from our code. The bus room's own few lines (a copy of the sample) count as the vendor's.
+/// A vendor's bus whose calls are counted apart from our code. The bus room's own few lines (a copy of the sample) count as the vendor's.
 class MarkedBus final : public bus::Bus {
 public:
     explicit MarkedBus(bus::Bus& bus) : bus_(bus) {}

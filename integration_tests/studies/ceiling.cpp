@@ -20,7 +20,7 @@ constexpr double false_alarm = 1e-6;
 constexpr double detection = 0.99;
 constexpr double isolation_size = 10;  // sigma
 
-/// A row of methods.md, "Single-sample ceiling".
+/// A row of the table "What a single frame can show at all" in docs/methods/README.md.
 struct Row {
     const char* layout;
     double size;       ///< f/sigma for P_d 0.99
@@ -44,7 +44,7 @@ constexpr Row rows[] = {
 struct DoubleRow {
     const char* layout;
     double size;
-    double least;  ///< methods.md
+    double least;  ///< recomputed
     double most;
 };
 
@@ -167,9 +167,9 @@ Report ceiling(const RunSettings& settings, const OnProgress& on_progress)
     Report report;
     report.text = fmt::format(
         "One faulty axis, white noise, one sample, P_fa {:g}.\n"
-        "f/sigma: detected with probability {} on the worst axis (exact), beside methods.md; detected: Monte Carlo at that size, all "
+        "f/sigma: detected with probability {} on the worst axis (exact), beside recomputed; detected: Monte Carlo at that size, all "
         "axes;\n"
-        "isolated: detected and the right axis named (glt) at {} sigma, beside methods.md\n\n"
+        "isolated: detected and the right axis named (glt) at {} sigma, beside recomputed\n\n"
         "{:<22}{:>3}{:>8}{:>7}{:>7}{:>17}{:>20}{:>6}{:>8}\n",
         false_alarm, detection, isolation_size, "layout", "n", "f/sigma", "pub.", "diff", "detected, %", "isolated", "pub.", "diff");
     std::size_t scene = 0;
@@ -177,7 +177,7 @@ Report ceiling(const RunSettings& settings, const OnProgress& on_progress)
         add_row(row, tallies[scene][0], tallies[scene + 1][0], report);
         scene += 2;
     }
-    report.text += "\nTwo simultaneous faults of one size: how often the likeliest pair (known k) is the right one, beside methods.md\n\n";
+    report.text += "\nTwo simultaneous faults of one size: how often the likeliest pair (known k) is the right one, beside recomputed\n\n";
     report.text += fmt::format("{:<22}{:>6}{:>17}{:>16}\n", "layout", "sigma", "right pair", "published");
     for (const DoubleRow& row : double_rows) add_double_row(row, tallies[scene++][0], report);
     report.charts = {detection_chart()};

@@ -27,8 +27,8 @@ struct Reactions {
     std::size_t missed = 0;
     double median_detected_s = 0;    ///< over all trials; infinite where most were not detected
     double median_isolated_s = 0;    ///< over all trials, those not right as infinite
-    double slowest_isolated_s = 0;   ///< of those that are right
-    std::vector<double> isolated_s;  ///< of every trial, in their order; those not right as infinite
+    double slowest_isolated_s = 0;   ///< slowest right isolation
+    std::vector<double> isolated_s;  ///< each trial in order; infinite where not right
 };
 
 struct CellResult {
@@ -38,7 +38,7 @@ struct CellResult {
     double largest_onset_error_s = 0;
     double largest_attitude_error_rad = 0;
     std::size_t attitudes = 0;     ///< compared
-    std::size_t beyond_bound = 0;  ///< of these
+    std::size_t beyond_bound = 0;  ///< trials beyond the attitude's bound
 };
 
 /// A whole recording without a fault.

@@ -37,7 +37,7 @@ struct TrialResult {
     Reaction px4;
     /// Where ours is right and the fault is a bias:
     double onset_error_s = 0;       ///< excluded from, minus true onset; below 0 = early
-    double attitude_error_rad = 0;  ///< after roll-back, against a run that was told the true onset
+    double attitude_error_rad = 0;  ///< after roll-back, against a run that knew the true onset
     double attitude_bound_rad = 0;  ///< 0.1 deg + weight x fault x onset error
 };
 

@@ -13,7 +13,7 @@ struct ExclusionCost {
     std::size_t frames = 0;  ///< that it is left out of
     double median_rad = 0;   ///< over all instruments and all beginnings in the longest stretch of motion
     double ninth_decile_rad = 0;
-    double share_above_free = 0;  ///< of the cases: more than the 0.1 deg that the attitude's bound allows for
+    double share_above_free = 0;  ///< share of cases above the 0.1 deg that the attitude's bound allows for
 };
 
 std::vector<ExclusionCost> exclusion_costs(const std::vector<RecordedArray>& arrays);

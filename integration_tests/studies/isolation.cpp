@@ -49,7 +49,7 @@ double worst_wrong(const Cells& cells)
     return worst;
 }
 
-/// Whether the case is put to a judge of this kind: one that is told the number of faults is not asked where there are none.
+/// Whether a judge of this kind judges the case: one that is given the number of faults is left out where there are none.
 bool asked(IsolationRow::Kind kind, std::size_t one)
 {
     return kind != IsolationRow::Kind::told || isolation_cases[one].faults.count > 0;
@@ -68,7 +68,7 @@ double mean_correct(const Cells& cells, IsolationRow::Kind kind = IsolationRow::
     return sum / count;
 }
 
-/// Of ours minus the published rate, which is rounded to 0.1 and has an error of its own.
+/// Standard error of our rate minus the recomputed one, which is rounded to 0.1 and has an error of its own.
 double error_of_difference(const Rate& ours, double published, double published_trials)
 {
     constexpr double rounding = 0.1 / 3.4641;  // uniform in one last digit
@@ -277,7 +277,7 @@ Report isolation(const RunSettings& settings, const OnProgress& on_progress)
     Report report;
     Extreme extreme;
     report.text =
-        "Correct, %: ours ± standard error, methods.md, difference (!: beyond four standard errors of both). Noise N(0,1), random signs "
+        "Correct, %: ours ± standard error, recomputed, difference (!: beyond four standard errors of both). Noise N(0,1), random signs "
         "and "
         "axes.\nRows with known k are bounds: they are told how many faults there are.\n\n";
     for (std::size_t layout = 0; layout < isolation_layouts.size(); ++layout)

@@ -8,7 +8,7 @@ namespace quorient::studies {
 
 namespace {
 
-constexpr double false_alarm = 1e-3;  // of every row with a chi-square test
+constexpr double false_alarm = 1e-3;  // for every row with a chi-square test
 constexpr std::nullopt_t none = std::nullopt;
 
 fdi::DetectorSettings named(const char* name)

@@ -24,12 +24,12 @@ inline constexpr std::array<IsolationCase, 5> isolation_cases{{
     {"2f U(20,200)s", {2, 20, 200}},
 }};
 
-/// methods.md's correct rates of a row, %; nothing where it prints none.
+/// Recomputed correct rates of a row, %; nothing where there is none.
 using Published = std::array<std::array<std::optional<double>, isolation_cases.size()>, isolation_layouts.size()>;
 
 struct IsolationRow {
     enum class Kind : std::uint8_t {
-        told,     ///< is told the number of faults: a bound, no competitor
+        told,     ///< knows the number of faults: a bound, no competitor
         assumes,  ///< takes it for granted that there are two, if any: no competitor either
         method,   ///< knows the measurement alone
         ours,     ///< a published operating point of the subset method

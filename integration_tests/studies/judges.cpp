@@ -17,7 +17,7 @@ namespace quorient::studies {
 
 namespace {
 
-constexpr double negligible = 1e-9;  // of a coefficient beside others of order one
+constexpr double negligible = 1e-9;  // for a coefficient beside others of order one
 
 class MethodJudge final : public Judge {
 public:
@@ -75,7 +75,7 @@ private:
         Eigen::Index first = 0;
         Eigen::Index second = 0;
         bool pair = false;
-        Eigen::Matrix2d inverse = Eigen::Matrix2d::Zero();  // of P_ww
+        Eigen::Matrix2d inverse = Eigen::Matrix2d::Zero();  // inverse of P_ww
         double log_determinant = 0;
     };
 

@@ -8,7 +8,7 @@ namespace quorient::studies {
 /// A method of the product as fdi::make_detector makes it; healthy and isolated are decisions, everything else is a flag.
 JudgeFactory method(const fdi::DetectorSettings& settings);
 
-/// Bounds, not methods: they are told how many faults there are. [methods.md, best achievable rate]
+/// Bounds, not methods: they know the number of faults. [docs/methods/subset_likelihood.md]
 ///   likelihood:   argmin S_w over the sets of that size, S_w = S0 - r_w'(P_ww)^-1 r_w;
 ///   posterior:    argmin S_w + log det P_ww - 2 log(share of N(f_w, (P_ww)^-1) within the sizes that the faults are drawn from): the
 ///                 posterior with a flat prior (two faults taken as independent in the last term).

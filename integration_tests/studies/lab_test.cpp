@@ -56,7 +56,7 @@ TEST(MonteCarlo, tells_its_progress_block_by_block)
     EXPECT_EQ(seen, (std::vector<std::size_t>{1, 2, 3, 4, 5, 6}));
 }
 
-// methods.md, best achievable rate; four standard errors of 20 000 trials here and 6000 there.
+// Recomputed rates; four standard errors of 20 000 trials here and 6000 there.
 TEST(MonteCarlo, finds_the_published_rates)
 {
     const auto expect_near = [](const Tally& tally, double published) {

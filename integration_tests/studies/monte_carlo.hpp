@@ -69,7 +69,7 @@ struct Rate {
 Rate rate(std::uint64_t count, std::uint64_t trials);
 
 struct RunSettings {
-    std::uint64_t trials = 0;  ///< of each scene
+    std::uint64_t trials = 0;  ///< per scene
     std::uint64_t seed = 1;
     unsigned threads = 0;                       ///< 0 = one per core
     std::vector<std::filesystem::path> logs{};  ///< recordings, for the studies that play some

@@ -37,7 +37,7 @@ struct Fitted {
     fdi::MotionNoise noise;
 };
 
-/// Of every recording: from all of its motion, then from each half.
+/// For every recording: terms from all of its motion, then from each half.
 std::vector<Fitted> all_fits(const std::vector<Recording>& recordings, const RunSettings& settings, const OnProgress& on_progress)
 {
     std::vector<Fitted> fits;

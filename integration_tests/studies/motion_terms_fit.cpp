@@ -64,7 +64,7 @@ struct Mean {
     double count = 0;
 };
 
-/// Logarithm of the smallest step of each axis that this window can tell, which is inverse to the square root of its information.
+/// Logarithm of the smallest detectable step of each axis in this window: inverse to the square root of its information.
 void add_window(const fdi::ArraySums& sums, std::size_t length, double interval_s, double threshold, Mean& mean)
 {
     const auto fit = sums.fit(length);

@@ -11,7 +11,7 @@ namespace quorient::studies {
 
 namespace {
 
-// The fit of methods.md, "Monte-Carlo figures: what reproduces". Unit: the standard deviation of the faults before the cut.
+// A fitted fault model (results/paper_002.md). Unit: the standard deviation of the faults before the cut.
 constexpr double epsilon = 0.0337;
 constexpr double least_fault = 2 * epsilon;
 constexpr double voting_tolerance = 0.228;
@@ -28,7 +28,7 @@ struct Figure {
     Method method;
     Share share;
     double printed;       ///< %
-    double recomputed;    ///< %, by methods.md
+    double recomputed;    ///< %, by an independent computation
     bool sets_tolerance;  ///< a tolerance was chosen so that this figure comes out
 };
 
@@ -135,7 +135,7 @@ Report paper_002(const RunSettings& settings, const OnProgress& on_progress)
         "A FIT, not a verification: the paper prints neither fault distribution nor tolerances. Fault ~ N(0, s^2) given |f| >= {} s, no "
         "noise;\ninvariants T = {} s sum|v|, voting T = {} s, mean T = {} s. Figures marked * were used to choose a tolerance, the others "
         "to choose the\nfamily of distributions: none is left to test it.\n\n{:<46}{:>8}{:>14}{:>8}{:>11}\n",
-        least_fault, epsilon, voting_tolerance, mean_tolerance, "figure, %", "printed", "fit", "diff", "methods.md");
+        least_fault, epsilon, voting_tolerance, mean_tolerance, "figure, %", "printed", "fit", "diff", "recomputed");
     report.json["fit"] = true;
     for (const Figure& figure : figures) add_figure(figure, tallies[figure.scene][figure.method], report);
     report.text += "\nNot reproducible:\n";

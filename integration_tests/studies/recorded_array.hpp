@@ -14,11 +14,11 @@
 
 namespace quorient::studies {
 
-/// A recording in memory, as measured, and what it tells of its sensors.
+/// A recording in memory, as measured, and the calibration that it gives.
 struct Recording {
     std::string name;
     std::vector<calibration::Sample> samples;
-    std::vector<std::uint64_t> sequence;  ///< of each sample; what the log lost leaves a gap
+    std::vector<std::uint64_t> sequence;  ///< one per sample; lost samples leave a gap
     ClusterDescription nominal;           ///< as the log describes its sensors
     calibration::Calibration calibration;
 };
@@ -42,7 +42,7 @@ struct RecordedArray {
 };
 
 /// @param instruments  places in the recording's list of instruments.
-/// @returns what tells that the two are not of the same sensors.
+/// @returns why the two recordings are not of the same sensors.
 tl::expected<RecordedArray, std::string> corrected(const Recording& recording, const calibration::CalibratedCluster& calibration,
                                                    const std::vector<std::size_t>& instruments);
 

@@ -18,14 +18,14 @@ struct Report {
     std::vector<cli::Chart> charts;
 };
 
-/// Methods x layouts x faults on white noise of sigma 1: the table "Best achievable rate" of methods.md beside its values, and the
+/// Methods x layouts x faults on white noise of sigma 1, beside an independent computation, and the
 /// subset method over its margin.
 Report isolation(const RunSettings& settings, const OnProgress& on_progress);
 
 /// The figures of paper 002 that a fitted fault model reproduces, and those that none does.
 Report paper_002(const RunSettings& settings, const OnProgress& on_progress);
 
-/// What one sample can tell at all: the fault size that is detected in 99 of 100 samples, and isolation at 10 sigma, per layout.
+/// The limits of one sample: the fault size that is detected in 99 of 100 samples, and isolation at 10 sigma, per layout.
 Report ceiling(const RunSettings& settings, const OnProgress& on_progress);
 
 /// False alarms and isolation of the observer schemes, with limits from noise and model error, and with a fixed threshold.

@@ -17,13 +17,13 @@ namespace {
 constexpr double interval_s = 0.01;
 constexpr double noise = 2e-4;
 constexpr double model_error = 0.05;
-constexpr double false_alarm = 1e-5;  // of one sample
+constexpr double false_alarm = 1e-5;  // per sample
 constexpr double readmitted_at_s = 45;
 
 /// How the limits are set, on a plant that is as the observers believe it to be, or not.
 struct Rule {
     const char* name;
-    double error;      ///< of every entry of A and B of the plant, uniform within +-
+    double error;      ///< error of every entry of A and B of the plant, uniform within +-
     double told;       ///< what the observers allow for
     double threshold;  ///< 0: from noise and model error
 };
