@@ -1,5 +1,5 @@
-// Prints what a plain subscriber receives: Fast DDS and the wire contract, nothing else of Quorient. `TOPIC {sample}` a line, until it is
-// told to end.   usage: quorient-observer SYSTEM.yaml
+// Prints what a plain subscriber receives: Fast DDS and the wire contract, nothing else of Quorient. `TOPIC {sample}` a line, until it
+// receives SIGTERM or SIGINT.   usage: quorient-observer SYSTEM.yaml
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPFinder.h>
 #include <fastrtps/utils/IPLocator.h>

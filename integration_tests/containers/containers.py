@@ -70,7 +70,7 @@ class Containers:
         return found
 
     def reaches(self, name, address):
-        """Whether anybody at the address answers to this container: a closed port refuses at once, a network without a way is silent."""
+        """Whether the address answers this container: a closed port refuses at once, a network without a route is silent."""
         probe = ("import socket, sys\ns = socket.socket()\ns.settimeout(1.5)\n"
                  "sys.exit(0 if s.connect_ex((sys.argv[1], 9)) in (0, 111) else 1)")
         return run("nsenter", "--net", "--target", self.processes()[name], sys.executable, "-c", probe, address, check=False).returncode == 0
@@ -79,13 +79,13 @@ class Containers:
         return json.loads(run("docker", "inspect", "-f", "{{json .HostConfig}}", self.ids[name]).stdout)
 
     def inject(self, fault):
-        """The truth tells whether it came through."""
+        """The truth topic shows whether the request arrived."""
         peers = re.findall(r"^  - ([0-9.]+)", SYSTEM_FILE.read_text(), re.MULTILINE)
         run("docker", "exec", self.ids["observer"], "quorient", "inject", fault, "--dds", "fastdds", "--interface", "any", "--domain", "42",
             "--participants-per-host", "3", *(word for peer in peers for word in ("--peer", peer)), check=False)
 
     def kill(self, *names):
-        """As a crash: by the processes' ids, so that Docker's restart policy brings them back, which it does not after `docker kill`."""
+        """Kills by process id, like a crash: Docker's restart policy then restarts the container, which it does not after `docker kill`."""
         for name in names:
             os.kill(self._processes[name], signal.SIGKILL)
 

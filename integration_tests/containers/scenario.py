@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Breaks the running containers in four ways, and judges them by the plain observer's stream and the simulator's truth.
 
-A chapter whose times do not hold while this machine did not let a sleeping thread run for 20 ms is played again, twice at most, and says
-so. What is not a matter of time (wrong isolations, attitudes, order) is never forgiven.
+A chapter that misses a deadline is repeated, twice at most, if this machine kept a sleeping thread from running for 20 ms meanwhile. The
+report says so. Wrong isolations, attitudes and order are not a matter of time: they fail at once.
 """
 import argparse
 import os
@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from typing import Callable
 
 from containers import SERVICES, Containers
-from observed import Observed  # first of these: it tells where the kill matrix is
+from observed import Observed  # imported first: it puts the kill matrix on the path
 from judge import disordered, errors, frames_until, largest_gap, missing_frames
 from streams import DEGRADED, FULL
 from trace import steps_text, table
@@ -26,7 +26,7 @@ VOTER_1_ON_A, FDI_C_ON_B = "198.18.10.41", "198.18.20.23"
 ICEORYX = 4  # Transport in codes.hpp
 TRANSPORT_FALLBACK = 46  # EventCode, likewise
 STEADY_FRAMES = 60
-HARM_S = 4.0  # of the pause and the cut: below discovery's lease of 10 s, longer than the 64 frames (1.28 s) that writers keep
+HARM_S = 4.0  # length of the pause and of the cut: below discovery's lease of 10 s, above the 64 frames (1.28 s) that writers keep
 
 # Bounds and where they come from.
 INTERVAL_S = 0.02  # rate_hz of configurations/compose.yaml
@@ -94,7 +94,7 @@ class Chapter:
     harm: Callable  # given the containers; @returns when the harm is over
     without: int  # lanes that cannot vouch meanwhile
     plain_gap: int  # frames that a plain reader of `voted` may miss
-    voters: tuple = (1, 2)  # that hear frames meanwhile
+    voters: tuple = (1, 2)  # those that receive frames meanwhile
     since: tuple = None
     end: tuple = None
     back_s: float = 0
@@ -124,7 +124,7 @@ def cut_network_a(containers):
 def chapters():
     yield Chapter("lane b is killed", kill_lane_b, LANE_B, 0)
     yield Chapter("voter 1, the owner, is paused", pause_voter_1, 0, PLAIN_GAP_FRAMES, (2,))
-    # The primary lane may be the one that is cut off, and the voters' own words may be lost on A: a take-over is allowed.
+    # The primary lane may be the one that is cut off, and the samples that voters exchange may be lost on A: a take-over is allowed.
     yield Chapter("network A is cut", cut_network_a, LANE_A, PLAIN_GAP_FRAMES)
 
 
@@ -184,7 +184,7 @@ def tell(observed, chapter, verdicts):
 def start_up(containers, observed, verdicts):
     """What must hold before anything is broken."""
     containers.prefer()
-    until(lambda: observed.merged and observed.plain and observed.truth, "the observer hears the voters and the truth", 120)
+    until(lambda: observed.merged and observed.plain and observed.truth, "the observer receives the voters' output and the truth", 120)
     until_whole(containers, observed, "both voters stand on three lanes", 60)
     until(lambda: not containers.not_healthy(), f"healthy: {containers.not_healthy()}", 60)
     verdicts.check("every container is healthy, both voters stand on three lanes", True)
@@ -195,7 +195,7 @@ def start_up(containers, observed, verdicts):
     shared = {name: status.transport for name, status in observed.statuses.items() if name.endswith("-a")}
     verdicts.check("lane a's processes share memory", shared == {"fdi-a": ICEORYX, "attitude-a": ICEORYX}, shared)
     fallen = [event.source for event in observed.events if event.code == TRANSPORT_FALLBACK]
-    verdicts.check("nobody fell back to another transport", not fallen, fallen or "")
+    verdicts.check("no process fell back to another transport", not fallen, fallen or "")
 
 
 def begin_fault(containers, observed):
@@ -259,7 +259,7 @@ def scenario(containers, observed, verdicts):
     judge_whole_run(observed, verdicts, onset)
     begin_s = time.monotonic()
     codes = containers.stop()
-    verdicts.check("every service ends in order when it is told to", not codes, codes or f"{time.monotonic() - begin_s:.1f} s")
+    verdicts.check("every service ends in order when asked to stop", not codes, codes or f"{time.monotonic() - begin_s:.1f} s")
     return told
 
 

@@ -1,7 +1,7 @@
-"""Lets the containers run before whatever else this machine does: a busy machine must not look like a fault.
+"""Gives the containers real-time priority: a busy machine must not look like a fault.
 
-What `priority` of the system file and deploy/docker-compose.rt.yml do where the daemon may give it, done here from outside, since a container
-with that override does not start where it may not. Where the kernel refuses, the run goes on without.
+`priority` of the system file and deploy/docker-compose.rt.yml do the same where the Docker daemon permits it. A container with that override
+does not start where it is not permitted, so the test sets the priority from outside. Where the kernel refuses, the run goes on without.
 """
 import os
 import pathlib
@@ -10,7 +10,7 @@ import re
 GROUPS = pathlib.Path(os.environ.get("QUORIENT_CONTROL_GROUPS", "/sys/fs/cgroup"))
 PRIORITY = 10
 SERVICES = ("quorient-", "iox-roudi")  # not what a health check starts
-RUNTIME_US = 900_000  # of a second on each processor: real-time group scheduling, where the kernel has it
+RUNTIME_US = 900_000  # per second and processor: real-time group scheduling, where the kernel has it
 
 
 class Scheduling:

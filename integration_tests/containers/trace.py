@@ -14,12 +14,12 @@ def axes_text(mask):
 
 
 def cell(samples, begin_s):
-    """Of one frame: when it came, from whom, and what it says."""
+    """When the samples of one frame arrived [ms after begin_s]."""
     return "; ".join(f"{1e3 * (sample.arrival_s - begin_s):.1f} ms" for sample in samples) or "–"
 
 
 def table(observed, title, since, end):
-    """Frames around `since`, the newest that was voted when the harm began, and what was said until `end`."""
+    """Frames around `since`, the newest that was voted when the harm began, and the events until `end`."""
     epoch, first = since
     shown = [(epoch, sequence) for sequence in range(first - BEFORE, first + AFTER + 1)]
     truth = {sample.identity: sample for sample in observed.truth}

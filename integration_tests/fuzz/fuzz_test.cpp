@@ -39,7 +39,7 @@ std::uint64_t number_from(const char* name)
     return text == nullptr ? 0 : std::strtoull(text, nullptr, 10);
 }
 
-/// The words for an input that ends the process, kept ready: a signal handler may write but not format.
+/// The message for an input that ends the process, formatted in advance: a signal handler may write but not format.
 std::array<char, 64> last_words{};
 
 void name_input(std::uint64_t seed)
@@ -49,7 +49,7 @@ void name_input(std::uint64_t seed)
     ::alarm(hang_s);
 }
 
-/// An abort, a fault or an input that takes longer than hang_s ends the process as ever, but says by which input.
+/// An abort, a fault or an input that takes longer than hang_s still ends the process, which first prints the seed of the input.
 void say_which_input_ends_it()
 {
     struct sigaction action {};

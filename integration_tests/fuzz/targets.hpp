@@ -5,7 +5,7 @@
 
 namespace quorient::fuzz {
 
-// Each takes bytes from whoever, does what a process would do with them, and aborts where a promise of its brain is broken.
+// Each target takes arbitrary bytes, handles them as a process would, and aborts if a guarantee of the process is broken.
 
 /// Descriptions and frames, good and spoiled: intake, detector, integrator.
 void frames(const std::uint8_t* data, std::size_t size);
@@ -16,7 +16,7 @@ void votes(const std::uint8_t* data, std::size_t size);
 /// sensor_msgs/Imu of four IMUs: their alignment.
 void imus(const std::uint8_t* data, std::size_t size);
 
-/// CDR of every type, ROS 2's too, by Fast DDS's generated code, and ours out of theirs.
+/// Decodes CDR of every type, ROS 2's too, by Fast DDS's generated code, then converts to our messages.
 void decode(const std::uint8_t* data, std::size_t size);
 
 }  // namespace quorient::fuzz

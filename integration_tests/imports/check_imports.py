@@ -62,7 +62,7 @@ def problems(root):
 
 
 def figure(root):
-    """Who really imports whom."""
+    """The imports found in the sources: room -> rooms that it includes."""
     edges = {}
     for path in (root / "common").rglob("*.?pp"):
         room = path.relative_to(root).parts[1]

@@ -27,7 +27,7 @@ class Voted:
 
 
 def samples(log):
-    """Of whole lines alone: the last one may still be written."""
+    """Parses whole lines only: the last one may still be being written."""
     return [Voted(line) for line in log.read_text().split("\n")[:-1]]
 
 
@@ -89,8 +89,8 @@ class Examples(InteropTest):
 
     def assert_stream_is_true(self, truth, stream, from_sequence=0):
         self.assertGreater(len(stream), 0.9 * len(truth))
-        # Nobody waits for the consumers: one may find the weaker voter first, and the stronger one when the frames come already. This one then
-        # sends again what it has kept for a reader that it knew and that did not know it, while the weaker one's last frames arrive.
+        # The frames do not wait for the consumers. A consumer may match the weaker voter first, and the stronger one only when frames already
+        # flow. The stronger one then resends its history to this reader, while the weaker one's last frames still arrive.
         found = 1 + max((place for place, sample in enumerate(stream) if sample.voter != 1), default=-1)
         self.assertLess(found, FOUND_WITHIN_FRAMES, "the stronger voter is found, and owns the stream from then on")
         for before, after in zip(stream[found:], stream[found + 1:]):
@@ -111,7 +111,7 @@ class Examples(InteropTest):
         for name, stream in streams.items():
             with self.subTest(name):
                 self.assert_stream_is_true(truth, stream, from_sequence=410)  # the fault begins in frame 400
-                self.assertNotIn(FULL, {sample.level for sample in stream if sample.sequence >= 410}, "three axes could tell no further fault")
+                self.assertNotIn(FULL, {sample.level for sample in stream if sample.sequence >= 410}, "three axes cannot detect a further fault")
         self.assertEqual({verdict["isolated_mask"] for verdict in verdicts}, {0b10})
 
     def test_consumers_go_on_with_the_second_voter_when_the_first_is_killed(self):

@@ -65,7 +65,7 @@ def angle(p, q):
 
 
 class InteropTest(ProcessTest):
-    """A domain of its own; output of long-running programs goes to files, so that nobody blocks on a full pipe."""
+    """A domain of its own. Output of long-running programs goes to files, so that none of them blocks on a full pipe."""
 
     first_domain = int(os.environ.get("QUORIENT_INTEROP_DOMAIN", 120 + os.getpid() * 7 % 90))
     domains = int(os.environ.get("QUORIENT_INTEROP_DOMAINS", 20))

@@ -16,7 +16,7 @@ LARGEST_RESIDENT_MB = 48
 LARGEST_GROWTH_MB = 8  # in two rounds of 10 000 units after the first; 2.5 measured, and 10 MB in the first
 LANES = DETECTORS | INTEGRATORS
 
-# What wrong_publisher can do: the event's code, words of its text, who must say them.
+# What wrong_publisher can do: the event's code, parts of its text, the services that must report it.
 MISTAKES = {
     "axis-nan": (REJECTED_INPUT, ("axis 2", "not finite"), LANES),
     "revision": (UNKNOWN_REVISION, ("revision 9", "1 is the newest"), LANES),
@@ -73,7 +73,7 @@ class ForeignPublisher(InteropTest):
         self.all_alive(self.services)
 
     def is_followed(self):
-        """A publisher that does everything right, from the moment when its predecessor has fallen silent."""
+        """A correct publisher that starts when its predecessor has fallen silent."""
         since = len(self.told())
         newest = max((event["epoch"] for event in self.told()), default=0)
         publisher = self.publish("none")
@@ -103,9 +103,9 @@ class ForeignPublisher(InteropTest):
         return {name: resident(process) for name, (process, _) in self.services.items()}
 
     def test_frames_of_another_type_are_told_from_silence(self):
-        """DDS matches by type: whoever publishes `frame` by another IDL is not heard at all, and that is said."""
+        """DDS matches by type: a publisher of `frame` from another IDL never matches, and every lane reports that."""
         publisher = self.publish("type")
-        self.eventually(lambda: LANES <= self.unmatched(), "every lane says that it matched nobody", timeout=12)
+        self.eventually(lambda: LANES <= self.unmatched(), "every lane reports that it has no match", timeout=12)
         self.stop(publisher)
         self.all_alive(self.services)
 

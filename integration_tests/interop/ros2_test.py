@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""ROS 2 on the wire, with plain DDS nodes in ROS 2's place: what our voters write is heard, what IMUs write is integrated."""
+"""ROS 2 on the wire, with plain DDS nodes in ROS 2's place: they receive what our voters write, and what their IMUs write is integrated."""
 import json
 import math
 import re
@@ -120,7 +120,7 @@ class Out(Ros2Test):
         names = {"rt/imu/data", "sensor_msgs::msg::dds_::Imu_", "rt/diagnostics", "diagnostic_msgs::msg::dds_::DiagnosticArray_"}
 
         def named():
-            # Discovery speaks the names to whoever joins.
+            # Discovery sends the names to a participant that joins.
             self.run_program("quorient", "echo", "status", "--count", 5, "--timeout", 3, "--domain", self.domain)
             decoded = subprocess.run(["tshark", "-r", file, "-Y", "rtps.param.topicName", *fields], capture_output=True, text=True, timeout=60)
             return names <= set(decoded.stdout.replace(",", "\t").split())
@@ -196,7 +196,7 @@ class In(Ros2Test):
         masks = {frame["valid_mask"] for frame in self.whole(frames)}
         self.assertEqual(masks, {ALL, ALL & ~MIDDLE}, "only the second IMU's axes are ever missing, and all three of them")
         named = {v["isolated_mask"] for v in self.whole(voted)}
-        self.assertLessEqual(named, {0, MIDDLE, REAR, MIDDLE | REAR}, "who stays away long is left out, and no other but the biased one")
+        self.assertLessEqual(named, {0, MIDDLE, REAR, MIDDLE | REAR}, "only an IMU that is silent for long and the biased one are excluded")
         self.assert_attitude_is_true(self.whole(voted))
         self.assertIn("biased", said.read_text())
 

@@ -1,4 +1,4 @@
-"""Figures of a run, from what was heard and the simulator's truth."""
+"""Figures of a run, from the recorded topics and the simulator's truth."""
 from dataclasses import dataclass, field
 
 from streams import HELD, angle
@@ -80,13 +80,13 @@ def frames_until(samples, since, condition, steady=20):
 
 
 def judge(merged, plain, truths, summary, since, end, faulty, voters, full):
-    """@param since identity at the action, end the last frame judged, faulty mask of axes that may be isolated, voters that are
-    there at the end, full what their samples are like when everybody is back."""
+    """@param since identity at the action, end the last frame judged, faulty mask of axes that may be isolated, voters the ones that run
+    at the end, full predicate: whether a sample shows that all processes are back."""
     truth = {sample.identity: sample for sample in truths}
     figures = Figures(frames=len(truth), levels={sample.level for sample in merged if sample.arrival_s})
     first = first_judged(merged)
     own_missing = len(missing_frames(merged, truth, first, end))
-    # A frame that either of two listeners heard was published: the launch's own count bounds it too, within one epoch.
+    # A frame that either of two listeners received was published. Within one epoch the launch's own count is a second bound.
     one_epoch = len({identity[0] for identity in truth}) == 1
     figures.missing = min(own_missing, summary["voted"]["missing"]) if one_epoch else own_missing
     figures.plain_gap = largest_gap(plain, truth, first_judged(plain), end)
@@ -95,7 +95,7 @@ def judge(merged, plain, truths, summary, since, end, faulty, voters, full):
     judged = [(identity, error, sample) for identity, error, sample in errors(merged, truth) if identity[0] == since[0]]
     figures.largest_error_rad = max(error for _, error, _ in judged)
     figures.final_error_rad = max(judged)[1]
-    # Behind the action, where the standard deviation says how much of the motion is not known.
+    # After the action, where the standard deviation states how uncertain the bridged motion is.
     after = [entry for entry in judged if entry[0] > since]
     figures.outside_sigmas = sum(error > max(5 * sample.sigma_rad, 1e-5) for _, error, sample in after)
     figures.claims = sum(sample.identity[0] > since[0] and sample.level not in HELD for sample in merged)

@@ -1,4 +1,4 @@
-"""One system under test: `quorient launch`, its children, and what three independent listeners hear of it."""
+"""One system under test: `quorient launch`, its children, and three independent listeners."""
 import argparse
 import json
 import os
@@ -16,7 +16,7 @@ from streams import Recording, parse_truth, parse_voted  # noqa: E402
 
 RATE_HZ = 200
 ALL_LANES = 0b111
-END_OF_GRACE_FRAMES = 20  # frames in flight while everything stops are nobody's loss
+END_OF_GRACE_FRAMES = 20  # frames in flight while everything stops do not count as lost
 
 
 class NotInTime(Exception):
@@ -105,10 +105,10 @@ class Pipeline:
 
     def until_running(self):
         heard = (self.merged, self.plain, self.truth)
-        self.until(lambda: all(recording.newest for recording in heard), "all three listeners hear the pipeline")
+        self.until(lambda: all(recording.newest for recording in heard), "all three listeners receive samples")
 
     def until_frame(self, frame):
-        """Returns at the moment when the publisher's frame is due, told from the fastest of the truths before it. @returns that frame."""
+        """Returns when the publisher's frame is due, as estimated from the truth sample with the shortest delay so far. @returns that frame."""
         self.until(lambda: self.truth.newest and self.truth.newest.identity[1] >= frame - self.rate_hz / 4, f"frame {frame} is near")
         epoch = self.truth.newest.identity[0]
         heard = [truth for truth in self.truth.samples[-self.rate_hz:] if truth.identity[0] == epoch]

@@ -12,7 +12,7 @@ from streams import COASTING, HELD, LOST, SINGLE
 
 FAULT_S = 1.5
 FAULTY_AXIS = 1
-ACT_FRAME = FAULT_S * RATE_HZ + 1.5  # the second contaminated frame is on its way: nobody can have confirmed yet
+ACT_FRAME = FAULT_S * RATE_HZ + 1.5  # the second contaminated frame is on its way: no detector can have confirmed yet
 STOPPED_S = 2.0
 LEASE_FRAMES = 14  # 50 ms lease + 20 ms, at 5 ms a frame
 FINAL_ERROR_RAD = 1e-5
@@ -124,7 +124,7 @@ def run(cell):
 
 
 def bounds_broken(cell, figures, merged, since):
-    """The promises, each in words when it does not hold."""
+    """Yields a sentence for each promise that does not hold."""
     allowed_rad = FINAL_ERROR_RAD + ((figures.frames_to_isolation + 1) * figures.contamination_rad if cell.fault else 0)
     if figures.wrong_isolations:
         yield f"{figures.wrong_isolations} wrong isolations"
@@ -173,7 +173,7 @@ def row(cell, figures, broken, attempts):
 
 
 def attempt(cell, attempts_allowed=2):
-    """A shared machine may starve one attempt of its time: the second one counts, and the table says so."""
+    """On a shared machine one attempt may get too little processor time: the second one counts, and the table says so."""
     for attempts in range(1, attempts_allowed + 1):
         try:
             figures, broken, logs = run(cell)

@@ -8,11 +8,11 @@ import threading
 import time
 from typing import NamedTuple
 
-# A full collection goes through every sample there is: after some minutes it takes longer than a reader's history lasts, and frames that
-# were given out would count as lost. Nothing here refers to itself.
+# A full garbage collection visits every sample: after some minutes it takes longer than a reader's history lasts, and delivered frames
+# would count as lost. It is not needed, as no object here refers to itself.
 gc.disable()
 
-PIPE_BYTES = 1 << 20  # the most that everybody may ask for: some seconds of samples while this process is busy
+PIPE_BYTES = 1 << 20  # the most that an unprivileged process may ask for: some seconds of samples while this process is busy
 
 FULL, DEGRADED, SINGLE, COASTING, LOST = 1, 2, 3, 4, 5
 HELD = (COASTING, LOST)

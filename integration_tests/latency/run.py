@@ -75,7 +75,7 @@ class Roudi:
 
 
 def cpu_s(process):
-    """Of all its threads, to the nanosecond and by one call: reading /proc/PID/task takes milliseconds, which the processes would wait for."""
+    """CPU time of all threads of a process, by one call: reading /proc/PID/task takes milliseconds, which would delay the processes."""
     return time.clock_gettime(~process.pid << 3 | CPUCLOCK_SCHED)
 
 

@@ -58,14 +58,14 @@ class Hosts:
         return f"qn{os.getpid()}-{host}"
 
     def inside(self, host):
-        """What a command begins with to run on this host."""
+        """The prefix of a command that runs on this host."""
         return ["ip", "netns", "exec", self.namespace(host)]
 
     def address(self, host, network):
         return f"198.18.{self._networks.index(network) + 1}.{list(self.networks_of_host).index(host) + 1}"
 
     def addresses(self, networks=None):
-        """Of all hosts, on these networks."""
+        """The addresses of all hosts on these networks."""
         return [self.address(host, network) for host, own in self.networks_of_host.items() for network in own
                 if networks is None or network in networks]
 

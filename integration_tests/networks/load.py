@@ -1,4 +1,4 @@
-"""How busy this machine is: one machine that plays four hosts may have no time left for the system under test."""
+"""How busy this machine is: one machine that simulates four hosts may have no time left for the system under test."""
 
 
 def _ticks():
@@ -13,6 +13,6 @@ class Load:
         self._begin = _ticks()
 
     def busy(self):
-        """@returns the share of all processors' time since this was made that somebody used, other guests of the host included."""
+        """@returns the share of all processors' time in use since this object was made, other guests of the host included."""
         total, idle = (now - then for now, then in zip(_ticks(), self._begin))
         return 1 - idle / max(total, 1)

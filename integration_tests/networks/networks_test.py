@@ -2,11 +2,11 @@
 """Three cells on hosts that are network namespaces; all of them: run_cell.py --all."""
 import unittest
 
-from run_cell import BY_NAME, attempt  # first: it tells where the kill matrix is
+from run_cell import BY_NAME, attempt  # imported first: it puts the kill matrix on the path
 from hosts import not_permitted
 from pipeline import ask_for_priority
 
-RATE_HZ = 50  # a slow machine that plays four hosts is busy without a pause at the 200 of run_cell.py
+RATE_HZ = 50  # at the 200 Hz of run_cell.py a slow machine that simulates four hosts is busy without a pause
 REASON = not_permitted()
 
 

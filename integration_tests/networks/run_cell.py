@@ -8,14 +8,14 @@ from typing import Callable, NamedTuple
 
 from hosts import Hosts, not_permitted
 from load import Load
-from spread_pipeline import Place, SpreadPipeline  # first of these: it tells where the kill matrix is
+from spread_pipeline import Place, SpreadPipeline  # imported first: it puts the kill matrix on the path
 from judge import Figures, judge
 from pipeline import ALL_LANES, RATE_HZ, NotInTime, ask_for_priority, at_least_once, rate_between
 from streams import DEGRADED, HELD, SINGLE
 
 FAULTY_AXIS = 1
 FINAL_ERROR_RAD = 1e-5
-FAULT_AFTER_S = 0.5  # of the harm's beginning: the lane that is cut off learns of the fault when it is over
+FAULT_AFTER_S = 0.5  # after the harm begins: the lane that is cut off learns of the fault when the harm is over
 NOTICED_S = 0.5  # after which nothing but DEGRADED is right while a lane is cut off
 STEADY_FRAMES = 60
 LANE_NAMES = "abc"
@@ -38,8 +38,8 @@ def lanes_on_hosts():
 
 
 def two_networks():
-    """Lane a on network A, lane c on network B, all else on both. Who is on both runs on Fast DDS, which sends on all its networks.
-    The harm waits for the end of its first second, when it announces itself fifty times to every place of every peer."""
+    """Lane a on network A, lane c on network B, all else on both. A process on both runs on Fast DDS, which sends on all its networks.
+    In its first second Fast DDS announces itself fifty times to every participant slot of every peer; the harm begins after that."""
     networks = {"core": ("A", "B"), "a": ("A",), "b": ("A", "B"), "c": ("B",)}
     lanes = {"a": ("cyclonedds", "eth0"), "b": ("fastdds", "any"), "c": ("fastdds", "eth0")}
     places = {f"{role}-{lane}": Place(lane, *joins) for lane, joins in lanes.items() for role in ("attitude", "fdi")}
@@ -98,8 +98,8 @@ BY_NAME = {cell.name: cell for cell in EVERYTHING}
 
 class Outcome(NamedTuple):
     figures: Figures = None
-    levels: str = ""  # what the level said while the harm lasted
-    busy: float = None  # the share of the machine's time that somebody used; None where the run did not come so far
+    levels: str = ""  # the levels reported while the harm lasted
+    busy: float = None  # the share of the machine's time in use; None where the run ended before
     broken: list = []  # the bounds that were not met
     logs: dict = {}
 
@@ -162,7 +162,7 @@ def said(during):
 
 
 def bounds_broken(cell, figures, during):
-    """The promises, each in words when it does not hold."""
+    """Yields a sentence for each promise that does not hold."""
     if figures.wrong_isolations:
         yield f"{figures.wrong_isolations} wrong isolations"
     if figures.disordered:
@@ -197,7 +197,8 @@ def row(cell, outcome, attempts):
 
 
 def attempt(cell, rate_hz, attempts_allowed=2):
-    """A shared machine may starve one attempt of its time: the second one counts, and the table says so. @returns outcome, attempts."""
+    """On a shared machine one attempt may get too little processor time: the second one counts, and the table says so.
+    @returns outcome, attempts."""
     for attempts in range(1, attempts_allowed + 1):
         try:
             outcome = run(cell, rate_hz)

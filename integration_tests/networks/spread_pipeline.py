@@ -87,11 +87,11 @@ class SpreadPipeline(Pipeline):
             return subprocess.Popen(command, env=self.environment, stdout=log, stderr=subprocess.STDOUT)
 
     def ended_early(self):
-        """Processes that are not there any more, with their exit codes."""
+        """Processes that have ended, with their exit codes."""
         return {name: process.poll() for name, process in self.processes.items() if process.poll() is not None}
 
     def finish(self):
-        """Ends the run in order. @returns what the judge takes from a launch's summary, from what the listeners heard."""
+        """Ends the run in order. @returns the same figures as a launch's summary, computed from what the listeners received."""
         epoch, sequence = self.truth.newest.identity
         self.end = (epoch, sequence - END_OF_GRACE_FRAMES)
         self.gone = self.ended_early()

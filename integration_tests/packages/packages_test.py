@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What is installed serves somebody who has only that: the programs run, and find_package(quorient) builds a consumer."""
+"""The installed package is complete: its programs run without the sources, and find_package(quorient) builds a consumer."""
 import gzip
 import os
 import pathlib

@@ -100,7 +100,7 @@ class Alignment(RunningUnit):
         self.run_demo()
         file = self.run_directory / "truth.json"
         truth = self.record("truth", 1600, file)
-        self.eventually(lambda: file.stat().st_size > 0, "the truth is heard")
+        self.eventually(lambda: file.stat().st_size > 0, "the truth is recorded")
         stated = [0.5, -0.5, 0.5, 0.5]
         before = self.echo("voter_output", 1)[0]["reset_counter"]
         sequence = self.reset(stated)

@@ -100,7 +100,7 @@ class Array(ProcessTest):
         self.assertEqual(report["frames"], len(body))
         for lane in "abc":
             isolated = {axis for entry in report["false_isolations"] if entry["lane"] == lane for axis in entry["axes"]}
-            self.assertEqual(isolated, {12, 13, 14}, "axes of IMU5; the replay calls it false because nobody announced it")
+            self.assertEqual(isolated, {12, 13, 14}, "axes of IMU5; the replay calls it false because it was not announced")
 
 
 @unittest.skipUnless(len(FLIGHT) == 4 and OTHER_FLIGHT[0].exists(), "no flights of four DOTs in the data folder")

@@ -1,4 +1,4 @@
-"""What process tests share: programs, domains, hard time-outs. No sleep stands for synchronisation anywhere."""
+"""What process tests share: programs, domains, hard time-outs. No sleep is used for synchronisation."""
 import json
 import os
 import pathlib
@@ -42,8 +42,8 @@ for outcome in ("addSuccess", "addError", "addFailure", "addSkip", "addSubTest",
 
 
 class ProcessTest(unittest.TestCase):
-    """A run directory and a DDS domain of its own; every process it starts is ended by its id. Void, and run again, where it fails while
-    the machine stood still."""
+    """A test with a run directory and a DDS domain of its own; every process it starts is ended by its id. A failure while the machine
+    stood still is void, and the test runs again."""
 
     next_domain = 1
 

@@ -79,15 +79,15 @@ class LiveVerbs(ProcessTest):
         self.eventually(lambda: file.stat().st_size > 10_000 or tshark.poll() is not None, "the capture has begun")
         if tshark.poll() is not None:
             self.skipTest("capturing on loopback is not permitted")
-        self.echo("voter_output", 5)  # discovery speaks the names to whoever joins
+        self.echo("voter_output", 5)  # discovery sends the names to a participant that joins
         tshark.send_signal(signal.SIGINT)
         tshark.communicate(timeout=60)
         decoded = subprocess.run(
             ["tshark", "-r", file, "-Y", "rtps.param.topicName", "-T", "fields", "-e", "rtps.param.topicName", "-e", "rtps.param.typeName"], capture_output=True, text=True, timeout=60
         )
-        spoken = set(decoded.stdout.replace(",", "\t").split())
+        names = set(decoded.stdout.replace(",", "\t").split())
         for name in ("quorient/voter_output", "quorient_msgs::VoterOutput", "quorient/frame", "quorient_msgs::SensorFrame"):
-            self.assertIn(name, spoken)
+            self.assertIn(name, names)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A service that may not have the priority, the locked memory and the processors it asks for says so once and goes on without."""
+"""A service that is refused the priority, locked memory or processors it asks for reports that once and goes on without."""
 import os
 import resource
 import shutil

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The notify protocol of systemd, spoken by a stand-in for systemd."""
+"""The notify protocol of systemd, with a stand-in for systemd."""
 import os
 import signal
 import socket

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Shared memory: really in use, seen from outside; its loss and its absence are told; what killed processes leave does not hurt."""
+"""Shared memory: it is really in use, seen from outside; its loss and absence are reported; files of killed processes do no harm."""
 import contextlib
 import json
 import os
@@ -208,11 +208,11 @@ class SharedMemory(ProcessTest):
             with self.subTest(options=options):
                 process = self.in_other_memory(options, *BY_FASTDDS, "--domain", self.domain, "--set", f"shared_memory={choice}")
                 self.eventually(lambda: (self.run_directory / "fdi-a.heartbeat").exists(), "the detector runs")
-                time.sleep(1.2)  # two looks at its endpoints: that nothing is said can only be seen by waiting
+                time.sleep(1.2)  # two checks of its endpoints: silence can only be seen by waiting
                 process.terminate()
-                told = "shm was asked for" in process.communicate(timeout=10)[0]
+                reported = "shm was asked for" in process.communicate(timeout=10)[0]
                 (self.run_directory / "fdi-a.heartbeat").unlink()
-                self.assertEqual(told, expected)
+                self.assertEqual(reported, expected)
         for options, reason in (("ro", "cannot open its shared memory"), ("size=1m", "needs 4 MiB in /dev/shm")):
             with self.subTest(options=options):
                 process = self.in_other_memory(options, *BY_FASTDDS, "--domain", self.domain)
@@ -234,10 +234,10 @@ class SharedMemory(ProcessTest):
                 self.assertEqual(refused.returncode, 2)
                 self.assertIn("in plain text", refused.stderr)
 
-    def test_a_daemon_that_does_not_take_this_process_in_is_told(self):
-        """As one of another version: RouDi answers nobody whose version is not its own."""
+    def test_a_daemon_that_does_not_accept_this_process_is_reported(self):
+        """Like a daemon of another version: RouDi does not answer a process of a version other than its own."""
         with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as deaf:
-            pathlib.Path(ROUDI_SOCKET).unlink(missing_ok=True)  # of a daemon that was killed: none answers, or this test would not run
+            pathlib.Path(ROUDI_SOCKET).unlink(missing_ok=True)  # left by a killed daemon: if one answered, this test would not run
             deaf.bind(ROUDI_SOCKET)
             try:
                 begin = time.monotonic()
@@ -249,35 +249,35 @@ class SharedMemory(ProcessTest):
         self.assertIn("does not take this process in", refused.stderr)
 
     @unittest.skipUnless(os.geteuid() == 0 and shutil.which("setpriv"), "another user needs root")
-    def test_a_daemon_of_another_user_is_told(self):
+    def test_a_daemon_of_another_user_is_reported(self):
         self.start_roudi()
         as_nobody = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", *self.command(*BY_ICEORYX, "--domain", self.domain)]
         refused = subprocess.run(as_nobody, env=self.environment, capture_output=True, text=True, timeout=30)
         self.assertNotEqual(refused.returncode, 0)
         self.assertRegex(refused.stderr, "belongs to root|may not open the memory")
 
-    def test_pools_that_are_too_small_are_told_with_the_size_needed(self):
+    def test_pools_that_are_too_small_are_reported_with_the_size_needed(self):
         self.start_roudi((512, 1000))
         refused = self.run_program("quorient-sensor", DEMO, "--name", "sensor", "--domain", self.domain, *ONE_LANE, "--set", "transport=iceoryx")
         self.assertEqual(refused.returncode, 1, refused.stderr)
         self.assertRegex(refused.stderr, r"no free chunk for quorient/\w+.*size = \d+")
 
-    def test_pools_that_run_out_are_told_and_end_nobody(self):
+    def test_pools_that_run_out_are_reported_and_end_no_process(self):
         self.start_roudi((1024, 12), (16384, 2))
         processes = self.start_one_lane("--set", "transport=iceoryx")
-        self.eventually(lambda: "samples not sent" in self.log("sensor"), "the publisher tells it")
+        self.eventually(lambda: "samples not sent" in self.log("sensor"), "the publisher reports it")
         processes[-1].terminate()
         self.assertEqual(processes[-1].wait(timeout=10), 0)
 
-    def test_the_death_of_roudi_is_told_and_a_lane_comes_back_although_another_roudi_runs(self):
+    def test_the_death_of_roudi_is_reported_and_a_lane_comes_back_although_another_roudi_runs(self):
         pipeline = self.start_demo(*QUIET)
         children = subprocess.run(["pgrep", "-P", str(pipeline.pid), "iox-roudi"], capture_output=True, text=True).stdout.split()
         self.assertEqual(len(children), 1)
         self.assertNotIn("daemon is gone", self.log("fdi-a"))
         os.kill(int(children[0]), signal.SIGKILL)
         for name in ("fdi-a", "attitude-c", "sensor"):
-            self.eventually(lambda name=name: "daemon is gone" in self.log(name), f"{name} tells it")
-        self.goes_on("fdi-a")  # those who share memory go on
+            self.eventually(lambda name=name: "daemon is gone" in self.log(name), f"{name} reports it")
+        self.goes_on("fdi-a")  # processes that share memory go on
         self.start_roudi()
         os.kill(self.services()["fdi-a"]["process"], signal.SIGKILL)
         self.eventually(lambda: "was asked for" in self.log("fdi-a"), "fdi-a is back, by UDP")
@@ -286,7 +286,7 @@ class SharedMemory(ProcessTest):
         pipeline.terminate()
         self.assertEqual(pipeline.wait(timeout=10), 0)
 
-    def test_what_killed_processes_leave_stops_nobody_and_is_cleaned_when_nobody_uses_it(self):
+    def test_files_of_killed_processes_stop_no_process_and_are_cleaned_when_unused(self):
         for _ in range(2):
             pipeline = self.start_demo(*QUIET)
             cleaned = self.run_program("quorient", "clean")
@@ -298,7 +298,7 @@ class SharedMemory(ProcessTest):
             pipeline.wait(timeout=10)
             self.eventually(lambda: not roudi_answers(), "iox-roudi is dead")
         self.assertTrue(self.our_files())
-        self.eventually(lambda: self.run_program("quorient", "clean").returncode == 0, "nobody uses the files")
+        self.eventually(lambda: self.run_program("quorient", "clean").returncode == 0, "no process uses the files")
         self.assertEqual(self.our_files(), [])
         self.assertEqual(list(self.run_directory.glob("*.heartbeat")), [])
 

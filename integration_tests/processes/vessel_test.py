@@ -45,7 +45,7 @@ class VesselDemo(ProcessTest):
     def test_fails_when_the_verdict_never_clears_again(self):
         latched = "lanes=[{name: b, detector: {scheme: directional, poles: [[-3, -4], [-0.5, -4]]}}]"
         code, summary, stderr = self.launch(VESSEL, "--speed", SPEED, "--set", latched)
-        self.assertEqual(code, 1, "with the gyro held out the paper's scheme can tell nothing of the second fault")
+        self.assertEqual(code, 1, "with the gyro excluded the paper's scheme cannot detect the second fault")
         self.assertIsNotNone(summary["lanes"]["b"]["faults"][0]["isolated_s"])
         self.assertIsNone(summary["lanes"]["b"]["faults"][1]["isolated_s"])
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Whether a machine gives processes their time: beside a test, one thread per processor naps again and again, and tells how late it woke.
+"""Whether the machine gives processes their time: beside a test, one thread per processor naps again and again and reports how late it woke.
 
-A service that is kept from running is silent, and the system rightly says so. A test that judges an undisturbed system is void then.
+A service that is kept from running is silent, and the system rightly reports it. A test of an undisturbed system is void then.
 """
 import os
 import subprocess

@@ -47,7 +47,7 @@ const std::vector<Scenario> scenarios{
     {"volatile writer, transient-local reader", {}, {.transient_local = true}, Case::plain, "incompatible: DURABILITY"},
     {"exclusive writer, exclusive reader", {.exclusive = true}, {.exclusive = true}, Case::plain, "delivers"},
     {"exclusive writer, shared reader", {.exclusive = true}, {}, Case::plain, "incompatible: OWNERSHIP"},
-    // Our exclusive reader on Fast DDS asks for liveliness MANUAL_BY_TOPIC too; which of the two is told is the vendor's choice.
+    // Our exclusive reader on Fast DDS asks for liveliness MANUAL_BY_TOPIC too; which of the two is reported is the vendor's choice.
     {"shared writer, exclusive reader", {}, {.exclusive = true}, Case::plain, "incompatible: OWNERSHIP or incompatible: LIVELINESS"},
     {"keyed instances", {}, {}, Case::instances, "delivers"},
     {"keyed instances, transient-local, depth 2, late joiner",
@@ -55,7 +55,7 @@ const std::vector<Scenario> scenarios{
      {.transient_local = true},
      Case::late_instances,
      "delivers the history"},
-    // By the standard a partition is silent; Cyclone DDS tells it all the same.
+    // By the standard a different partition is silent. Cyclone DDS reports it all the same.
     {"the foreign node in another partition", {}, {}, Case::silent, "no match or incompatible: PARTITION"},
     {"the foreign node with another type name", {}, {}, Case::silent, "no match"},
     {"the foreign node in another domain", {}, {}, Case::other_domain, "no match"},
@@ -89,7 +89,7 @@ public:
         elsewhere_ = node(domain + 1);
     }
 
-    /// @returns what happened, in the words of the table.
+    /// @returns what happened, as it stands in the table.
     std::string run(const Scenario& scenario, bool foreign_publishes)
     {
         name_ = &names_.emplace_back(fmt::format("interop/{}", names_.size()));
@@ -171,14 +171,15 @@ private:
         }
     }
 
-    /// A topic that does match tells that what was announced before it has been seen.
+    /// A control topic that does match shows that discovery has processed what was announced before it.
     std::string silence(bool with_control)
     {
         if (with_control) {
             const Topic<VotedAttitude> control{names_.emplace_back(*name_ + "_control").c_str(), TypeId::voted_attitude, {}};
-            auto heard = bus_->subscribe(control);
-            const auto speaks = foreign_->writer(control.spec.name, {});
-            if (!eventually([&] { return heard.status().matched > 0 && speaks->matched() > 0; })) return "the control did not match";
+            auto control_reader = bus_->subscribe(control);
+            const auto control_writer = foreign_->writer(control.spec.name, {});
+            const auto matched = [&] { return control_reader.status().matched > 0 && control_writer->matched() > 0; };
+            if (!eventually(matched)) return "the control did not match";
         } else {
             const auto until = SteadyClock::now() + std::chrono::milliseconds{300};
             while (SteadyClock::now() < until) bus_->wait(2'000'000);
@@ -203,7 +204,7 @@ private:
         return judge(reading, units, first, count, history ? "delivers the history" : "delivers");
     }
 
-    /// Both sides say matched a moment before the last of them is: what a volatile reader misses then is nobody's fault.
+    /// Both sides report a match shortly before the match is complete. A volatile reader may miss samples until then, which is no error.
     bool warm_up(const Side& writing, const Side& reading)
     {
         Sample sample;
@@ -258,7 +259,7 @@ std::string table(const std::map<std::string, std::vector<std::string>>& rows)
         "reads what a plain Cyclone DDS\nnode writes; \"->\": it writes, the plain node reads. Debian 12: Fast DDS 2.9.1, Cyclone DDS "
         "0.10.2. \"incompatible: X\" is what our side reports\n(`EndpointStatus`, and as an event); \"no match\" is silent by the "
         "standard, "
-        "and the services' watchdog tells it after 5 s.\n\n| | Fast <- Fast | Fast -> Fast | Fast <- Cyclone | Fast -> Cyclone | "
+        "and the services' watchdog reports it after 5 s.\n\n| | Fast <- Fast | Fast -> Fast | Fast <- Cyclone | Fast -> Cyclone | "
         "Cyclone <- Fast | Cyclone -> Fast | Cyclone <- Cyclone | Cyclone -> Cyclone |\n|---|---|---|---|---|---|---|---|---|\n";
     for (const auto& scenario : scenarios) {
         text += fmt::format("| {} |", scenario.name);

@@ -1,4 +1,4 @@
-// What somebody else writes with the installed rooms: isolate a biased gyro of the dodecahedron, and print its axis.
+// A consumer of the installed package: isolates a biased gyro of the dodecahedron and prints its axis.
 
 #include <quorient/attitude/quaternion.hpp>
 #include <quorient/fdi/make_detector.hpp>
