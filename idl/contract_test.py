@@ -20,7 +20,7 @@ class Disagreement(unittest.TestCase):
         return contract.parse_idl(text)[0]
 
     def test_a_member_without_its_unit(self):
-        found = list(contract.comment_problems(self.struct("double rate;  // of turn"), self.CODES))
+        found = list(contract.comment_problems(self.struct("double rate;  // rate of turn"), self.CODES))
         self.assertRegex(found[0], "rate.*unit")
 
     def test_a_code_that_does_not_exist(self):
