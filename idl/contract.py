@@ -111,7 +111,7 @@ def comment_problems(struct, codes):
         elif (field.type == "double" or field.name.endswith("_ns")) and not field.comment.startswith("["):
             yield f"{where}: its comment does not begin with the unit in brackets"
         for word in re.findall(r"\b(?:[A-Z][a-z]+){2,}\b", field.comment):
-            known = word in codes or word in ("ClusterDescription", "FaultVerdict", "FaultCommand")
+            known = word in codes or word in ("ClusterDescription", "FaultVerdict", "FaultDiagnosis", "FaultCommand")
             if not known:
                 yield f"{where}: names {word}, which is neither a code nor a type"
 

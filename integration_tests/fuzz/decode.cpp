@@ -41,6 +41,7 @@ void decode(const std::uint8_t* data, std::size_t size)
                                   decode_as<SensorFramePubSubType>,
                                   decode_as<TruthStatePubSubType>,
                                   decode_as<FaultVerdictPubSubType>,
+                                  decode_as<FaultDiagnosisPubSubType>,
                                   decode_as<AttitudeStatePubSubType>,
                                   decode_as<VoterOutputPubSubType>,
                                   decode_as<VotedAttitudePubSubType>,

@@ -2,6 +2,7 @@
 #include "quorient/attitude/integrator.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
 #include "quorient/fdi/make_detector.hpp"
+#include "quorient/messages/meaning.hpp"
 #include "quorient/runtime/frame_intake.hpp"
 #include "quorient/runtime/intake_report.hpp"
 #include "require.hpp"
@@ -27,7 +28,7 @@ ClusterDescription description(std::uint64_t epoch, std::uint8_t axes)
     made.epoch = epoch;
     made.revision = 1;
     made.unit = unit;
-    made.kind = static_cast<std::uint8_t>(SensorKind::gyro);
+    made.kind = octet(SensorKind::gyro);
     made.axis_count = axes;
     made.instrument_count = static_cast<std::uint8_t>(axes / axes_of_instrument);
     made.interval_s = 0.005;
@@ -117,7 +118,7 @@ void frames(const std::uint8_t* data, std::size_t size)
         frame.sample_time_ns = static_cast<std::int64_t>(sequence) * interval_ns;
         frame.interval_s = 0.005;
         frame.unit = unit;
-        frame.kind = static_cast<std::uint8_t>(SensorKind::gyro);
+        frame.kind = octet(SensorKind::gyro);
         frame.axis_count = axes;
         frame.valid_mask = all_axes(axes);
         frame.description_revision = 1;

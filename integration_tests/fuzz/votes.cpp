@@ -1,4 +1,5 @@
 #include "bytes.hpp"
+#include "quorient/messages/meaning.hpp"
 #include "quorient/voting/voter.hpp"
 #include "require.hpp"
 #include "targets.hpp"
@@ -52,7 +53,7 @@ void votes(const std::uint8_t* data, std::size_t size)
         attitude.sequence = sequence;
         attitude.unit = 1;
         attitude.lane = lane;
-        attitude.mode = static_cast<std::uint8_t>(AttitudeMode::normal);
+        attitude.mode = octet(AttitudeMode::normal);
         attitude.angle_sigma_rad = 1e-6;
         attitude.used_mask = 0xF;
         attitude.excluded_from.fill(never);
@@ -61,7 +62,7 @@ void votes(const std::uint8_t* data, std::size_t size)
         verdict.sequence = sequence;
         verdict.unit = 1;
         verdict.detector = lane;
-        verdict.state = static_cast<std::uint8_t>(VerdictState::healthy);
+        verdict.state = octet(VerdictState::healthy);
         VotedAttitude other;
         other.epoch = 1;
         other.sequence = sequence;

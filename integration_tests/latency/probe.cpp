@@ -3,6 +3,7 @@
 #include "quantiles.hpp"
 #include "quorient/bus/bus.hpp"
 #include "quorient/messages/codes.hpp"
+#include "quorient/messages/meaning.hpp"
 #include "quorient/messages/stamps.hpp"
 
 #include <CLI/CLI.hpp>
@@ -112,11 +113,11 @@ int run(const bus::Settings& settings, std::uint64_t skipped, double interval_s)
     while (!stopped) {
         (*bus)->wait(50'000'000);
         while (statuses.take(status)) {
-            if (status.role == static_cast<std::uint8_t>(ServiceRole::sensor)) sent_by_unit[status.unit] = status.published;
+            if (role_of(status) == ServiceRole::sensor) sent_by_unit[status.unit] = status.published;
         }
         while (outputs.take(voted)) {
             // A voter repeats its last attitude where frames end; only frames count.
-            if (voted.level == static_cast<std::uint8_t>(VoteLevel::coasting) || voted.level == static_cast<std::uint8_t>(VoteLevel::lost))
+            if (level_of(voted) == VoteLevel::coasting || level_of(voted) == VoteLevel::lost)
                 continue;
             records.push_back(
                 {voted.unit, voted.voter, voted.sequence, std::chrono::steady_clock::now().time_since_epoch().count(), voted.stamp_ns});

@@ -3,6 +3,7 @@
 #include "parallel.hpp"
 #include "px4_rule.hpp"
 #include "quorient/fdi/accumulating.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -154,7 +155,7 @@ HealthyRun play_healthy(const std::vector<RecordedArray>& arrays, std::size_t ar
     Px4Rule px4(recording.cluster);
     for (const SensorFrame& frame : recording.frames) {
         const FaultVerdict& verdict = monitor.assess(frame);
-        const auto state = static_cast<VerdictState>(verdict.state);
+        const auto state = state_of(verdict);
         run.ambiguous_frames += state == VerdictState::ambiguous ? 1 : 0;
         run.suspicious_frames += state == VerdictState::suspect ? 1 : 0;
         run.largest_statistic = std::max(run.largest_statistic, verdict.statistic);

@@ -1,6 +1,7 @@
 #include "detection_cells.hpp"
 #include "detection_report.hpp"
 #include "quorient/fdi/accumulating.hpp"
+#include "quorient/messages/meaning.hpp"
 #include "study.hpp"
 #include "cli/program.hpp"
 

@@ -2,7 +2,8 @@
 
 #include "px4_rule.hpp"
 #include "quorient/attitude/integrator.hpp"
-#include "quorient/attitude/quaternion.hpp"
+#include "quorient/messages/meaning.hpp"
+#include "quorient/rotation/quaternion.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -40,7 +41,7 @@ void judge(const RecordedArray& array, const Trial& trial, std::size_t at, AxisM
 void watch(const RecordedArray& array, const Trial& trial, std::size_t at, const FaultVerdict& verdict, Reaction& reaction)
 {
     if (verdict.isolated_mask != 0) return judge(array, trial, at, verdict.isolated_mask, reaction);
-    const auto state = static_cast<VerdictState>(verdict.state);
+    const auto state = state_of(verdict);
     const bool quiet = state == VerdictState::healthy || state == VerdictState::warming_up;
     if (quiet || at < trial.onset) return;
     reaction.detected_s = std::min(reaction.detected_s, delay_s(array, trial, at));
@@ -82,7 +83,7 @@ void compare_attitudes(const RecordedArray& array, const Trial& trial, const std
     const auto& h = array.cluster.axes;
     const Eigen::Vector3d share = (h.transpose() * h).inverse() * h.row(static_cast<Eigen::Index>(trial.axis)).transpose();
     result.onset_error_s = begin_s(frames[excluded]) - begin_s(frames[trial.onset - first]);
-    result.attitude_error_rad = attitude::angle_between(ours, best);
+    result.attitude_error_rad = rotation::angle_between(ours, best);
     result.attitude_bound_rad = free_of_charge_rad + share.norm() * std::abs(trial.fault.value * result.onset_error_s);
 }
 

@@ -1,6 +1,6 @@
 #include "recorded_array.hpp"
 
-#include "quorient/runtime/text.hpp"
+#include "quorient/messages/name.hpp"
 #include "quorient/calibration/gated_terms.hpp"
 #include "quorient/calibration/log_sample.hpp"
 #include "quorient/calibration/motion_level.hpp"
@@ -114,7 +114,7 @@ tl::expected<RecordedArray, std::string> corrected(const Recording& recording, c
 
     RecordedArray array;
     array.name = recording.name;
-    for (const std::size_t instrument : instruments) array.name += fmt::format(" {}", runtime::text_of(theirs.instrument_name[instrument]));
+    for (const std::size_t instrument : instruments) array.name += fmt::format(" {}", text_of(theirs.instrument_name[instrument]));
     array.cluster = std::move(*cluster);
     if (calibration.motion_level > 0) array.motion_noise = calibration.motion_level;
     array.gated_noise = calibration.gated;

@@ -1,9 +1,9 @@
 #include "attitude_integrator.hpp"
 
 #include "quorient/geometry/sensor_cluster.hpp"
+#include "quorient/messages/meaning.hpp"
 #include "quorient/runtime/intake_report.hpp"
-#include "quorient/runtime/text.hpp"
-#include "quorient/runtime/words.hpp"
+#include "quorient/messages/words.hpp"
 
 #include <fmt/format.h>
 #include <bit>
@@ -31,17 +31,6 @@ constexpr std::int64_t reset_patience_ns = 1'000'000'000;
 
 /// Of an axis' direction between descriptions of the same sensors: more than rounding, less than any mounting.
 constexpr double largest_axis_change = 1e-6;
-
-double angle_deg(const std::array<double, 4>& rotation)
-{
-    const double sine = std::hypot(rotation[1], rotation[2], rotation[3]);
-    return 2 * std::atan2(sine, std::abs(rotation[0])) * 180 / std::numbers::pi;
-}
-
-bool is(const AttitudeState& attitude, AttitudeMode mode)
-{
-    return attitude.mode == static_cast<std::uint8_t>(mode);
-}
 
 }  // namespace
 
@@ -82,7 +71,7 @@ bool AttitudeIntegrator::look_at_readiness()
 void AttitudeIntegrator::on_description(const ClusterDescription& description)
 {
     intake_.describe(description);
-    const bool measured = description.initial_attitude_known == static_cast<std::uint8_t>(InitialAttitude::measured);
+    const bool measured = initial_attitude_of(description) == InitialAttitude::measured;
     if (integrator_ && measured && description.unit == settings_.process.node.unit && description.epoch > last_.epoch)
         integrator_->begin_epoch(description.epoch, description.initial_attitude);
     handle_accepted();
@@ -112,7 +101,7 @@ bool AttitudeIntegrator::prepare(const ClusterDescription& description, std::uin
 {
     auto integration = settings_.integration;
     integration.initialised = first_sequence == 0 && !voted_;
-    if (description.initial_attitude_known != static_cast<std::uint8_t>(InitialAttitude::unknown))
+    if (initial_attitude_of(description) != InitialAttitude::unknown)
         integration.initial_attitude = description.initial_attitude;
     auto cluster = geometry::make_cluster(description);
     if (!cluster) {
@@ -132,6 +121,11 @@ bool AttitudeIntegrator::prepare(const ClusterDescription& description, std::uin
     if (!integration.initialised && voted_) integrator_->seed(*voted_);
     if (verdict_) integrator_->apply(*verdict_);
     return true;
+}
+
+std::string AttitudeIntegrator::names_of(AxisMask axes) const
+{
+    return intake_.description() ? axis_names(*intake_.description(), axes) : axis_numbers(axes);
 }
 
 /// The history is one of these axes; a publisher that comes back with others needs lanes that start anew.
@@ -195,8 +189,8 @@ void AttitudeIntegrator::tell_changes(const AttitudeState& attitude)
     if (attitude.rolled_back_frames > 0)
         node_.report(EventCode::rolled_back, Severity::info, identity, attitude.isolated_mask,
                      fmt::format("attitude corrected by {:.3g} deg: {} frames integrated again without {}; {} axes in use",
-                                 angle_deg(attitude.reset_rotation), attitude.rolled_back_frames,
-                                 runtime::describe_axes(attitude.isolated_mask), std::popcount(attitude.used_mask)));
+                                 rotation::angle_of(attitude.reset_rotation) * 180 / std::numbers::pi, attitude.rolled_back_frames,
+                                 names_of(attitude.isolated_mask), std::popcount(attitude.used_mask)));
     if (integrator_->history_too_short() > told_too_short_) {
         told_too_short_ = integrator_->history_too_short();
         node_.report(EventCode::history_too_short, Severity::warning_high, identity, attitude.isolated_mask,
@@ -207,10 +201,10 @@ void AttitudeIntegrator::tell_changes(const AttitudeState& attitude)
                                "frames are missing: bridged by the accumulated angles");
     if (attitude.seeded && !last_.seeded)
         node_.report(EventCode::seeded, Severity::info, identity, 0, "SEEDED: took over the voted attitude");
-    if (is(attitude, AttitudeMode::coasting) && !is(last_, AttitudeMode::coasting))
+    if (mode_of(attitude) == AttitudeMode::coasting && mode_of(last_) != AttitudeMode::coasting)
         node_.report_throttled(EventCode::coasting, Severity::warning_high, identity, attitude.used_mask,
                                "COASTING: fewer than three trusted axes, the attitude is held");
-    if (is(attitude, AttitudeMode::lost) && !is(last_, AttitudeMode::lost))
+    if (mode_of(attitude) == AttitudeMode::lost && mode_of(last_) != AttitudeMode::lost)
         node_.report_throttled(EventCode::lost, Severity::warning_high, identity, 0,
                                "LOST: the rotation in between is not known; re-align with a reset of the attitude");
 }
@@ -220,10 +214,9 @@ void AttitudeIntegrator::on_voted(const VotedAttitude& voted)
     if (voted.unit != settings_.process.node.unit || (voted_ && identity_of(voted) < identity_of(*voted_))) return;
     voted_ = voted;
     if (!integrator_) return;
-    const bool vouched =
-        voted.level == static_cast<std::uint8_t>(VoteLevel::full) || voted.level == static_cast<std::uint8_t>(VoteLevel::degraded);
+    const bool vouched = is_vouched(voted);
     if (vouched && voted.primary_lane != settings_.integration.lane) integrator_->let_go(~voted.isolated_mask);
-    if (is(integrator_->state(), AttitudeMode::initialising)) return integrator_->seed(voted);
+    if (mode_of(integrator_->state()) == AttitudeMode::initialising) return integrator_->seed(voted);
     if (vouched) mend_seed(voted);
     if (absent_until_ && identity_of(voted) >= *absent_until_) rejoin(voted);
 }
@@ -252,13 +245,13 @@ void AttitudeIntegrator::mend_seed(const VotedAttitude& voted)
     integrator_->seed(voted);
     if (integrator_->distrusted_in_seed() != 0) return;  // that frame has not come yet
     node_.report(EventCode::seeded, Severity::info, identity_of(voted), axes,
-                 fmt::format("SEEDED again: the attitude taken over had a fault of {} in it", runtime::describe_axes(axes)));
+                 fmt::format("SEEDED again: the attitude taken over had a fault of {} in it", names_of(axes)));
 }
 
 /// This process was stopped or cut off: the bridge over its absence lacks the coning in it, the lanes that went on do not.
 void AttitudeIntegrator::rejoin(const VotedAttitude& voted)
 {
-    if (voted.level > static_cast<std::uint8_t>(VoteLevel::single)) return;
+    if (!is_vouched(voted) && level_of(voted) != VoteLevel::single) return;
     const bool surer = voted.angle_sigma_rad * much_surer < integrator_->state().angle_sigma_rad;
     if (surer && voted.primary_lane != settings_.integration.lane) integrator_->seed(voted);
     absent_until_.reset();
@@ -266,7 +259,7 @@ void AttitudeIntegrator::rejoin(const VotedAttitude& voted)
 
 void AttitudeIntegrator::on_command(const FaultCommand& command)
 {
-    if (command.action != static_cast<std::uint8_t>(CommandAction::reset_attitude)) return;
+    if (action_of(command) != CommandAction::reset_attitude) return;
     publish_pending();
     refuse_waiting_reset("had not come when another order did");
     const double frames_ahead = command.value - static_cast<double>(last_.sequence);

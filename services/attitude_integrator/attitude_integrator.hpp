@@ -27,6 +27,7 @@ private:
     std::string reset_attitude(const FaultCommand& command);
     void handle_accepted();
     bool prepare(const ClusterDescription& description, std::uint64_t first_sequence);
+    std::string names_of(AxisMask axes) const;
     bool same_axes(const ClusterDescription& description);
     void integrate(const SensorFrame& frame);
     void mend_seed(const VotedAttitude& voted);

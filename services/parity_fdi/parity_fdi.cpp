@@ -2,10 +2,10 @@
 
 #include "quorient/fdi/observer_detector.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"
-#include "quorient/runtime/describe.hpp"
+#include "quorient/messages/exclusions.hpp"
+#include "quorient/messages/meaning.hpp"
 #include "quorient/runtime/intake_report.hpp"
-#include "quorient/runtime/text.hpp"
-#include "quorient/runtime/words.hpp"
+#include "quorient/messages/words.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -111,9 +111,7 @@ bool ParityFdi::prepare(const ClusterDescription& description)
     monitor_ = std::move(*made);
     if (last_.isolated_mask != 0) {
         // Sequences start again with the epoch: what was bad before is bad from its first frame.
-        std::array<std::uint64_t, max_axes> excluded_from = last_.excluded_from;
-        for (auto& sequence : excluded_from) sequence = sequence == never ? never : 0;
-        monitor_->adopt(excluded_from);
+        monitor_->adopt(last_.excluded_from.of(last_.isolated_mask).in_new_epoch());
     }
     adopt_memories();
     return true;
@@ -133,14 +131,14 @@ void ParityFdi::assess(const SensorFrame& frame)
     if (verdicts_.publish(verdict)) ++node_.status().published;
     node_.handled(identity_of(frame), arrival_ns_);
     node_.set_state(ServiceState::running);
-    if (verdict.state != static_cast<std::uint8_t>(VerdictState::warming_up)) adopting_ = false;
+    if (state_of(verdict) != VerdictState::warming_up) adopting_ = false;
     tell_changes(verdict);
     last_ = verdict;
 }
 
 std::string ParityFdi::describe(AxisMask axes) const
 {
-    return intake_.description() ? runtime::describe_axes(axes, *intake_.description()) : runtime::describe_axes(axes);
+    return intake_.description() ? axis_names(*intake_.description(), axes) : axis_numbers(axes);
 }
 
 void ParityFdi::tell_changes(const FaultVerdict& verdict)
@@ -148,10 +146,7 @@ void ParityFdi::tell_changes(const FaultVerdict& verdict)
     const auto identity = identity_of(verdict);
     const auto newly_isolated = verdict.isolated_mask & ~last_.isolated_mask;
     if (newly_isolated != 0) {
-        std::uint64_t onset = never;
-        for (std::size_t axis = 0; axis < max_axes; ++axis) {
-            if (has_axis(newly_isolated, axis)) onset = std::min(onset, verdict.excluded_from[axis]);
-        }
+        const std::uint64_t onset = verdict.excluded_from.earliest(newly_isolated);
         node_.report(verdict.adopted ? EventCode::adopted : EventCode::isolated, Severity::warning_high, identity, newly_isolated,
                      fmt::format("{} {} since frame {}: statistic {:.4g}, limit {:.4g}", verdict.adopted ? "ADOPTED" : "ISOLATED",
                                  describe(newly_isolated), onset, verdict.statistic, verdict.threshold));
@@ -164,7 +159,7 @@ void ParityFdi::tell_changes(const FaultVerdict& verdict)
         node_.report(EventCode::readmitted, Severity::info, identity, readmitted, fmt::format("READMITTED {}", describe(readmitted)));
     if (verdict.state == last_.state || newly_isolated != 0) return;
     const auto reason = monitor_->detector().reason();
-    switch (static_cast<VerdictState>(verdict.state)) {
+    switch (state_of(verdict)) {
         case VerdictState::ambiguous:
             node_.report_throttled(EventCode::ambiguous, Severity::warning_high, identity, verdict.suspect_mask,
                                    fmt::format("AMBIGUOUS: {} candidate sets, one of {} is faulty", verdict.candidate_count,
@@ -193,16 +188,14 @@ void ParityFdi::tell_changes(const FaultVerdict& verdict)
 void ParityFdi::on_lane_attitude(const AttitudeState& attitude)
 {
     if (attitude.unit != settings_.process.node.unit || attitude.lane != settings_.lane || attitude.isolated_mask == 0) return;
-    remember(attitude.epoch, attitude.excluded_from, of_lane_);
+    remember(attitude.epoch, attitude.excluded_from.of(attitude.isolated_mask), of_lane_);
 }
 
 /// A fault that was isolated while this detector was dead may show no more; what a majority of lanes stands behind is taken over.
 void ParityFdi::on_voted(const VotedAttitude& voted)
 {
-    const bool vouched =
-        voted.level == static_cast<std::uint8_t>(VoteLevel::full) || voted.level == static_cast<std::uint8_t>(VoteLevel::degraded);
-    if (voted.unit != settings_.process.node.unit || voted.isolated_mask == 0 || !vouched) return;
-    if (adopting_) remember(voted.epoch, voted.excluded_from, of_voters_);
+    if (voted.unit != settings_.process.node.unit || voted.isolated_mask == 0 || !is_vouched(voted)) return;
+    if (adopting_) remember(voted.epoch, voted.excluded_from.of(voted.isolated_mask), of_voters_);
     else if (monitor_ && voted.epoch == last_.epoch) adopt_missed(voted);
 }
 
@@ -211,20 +204,17 @@ void ParityFdi::on_voted(const VotedAttitude& voted)
 void ParityFdi::adopt_missed(const VotedAttitude& voted)
 {
     const std::uint64_t warm_up = settings_.verdict.warm_up_frames;  // an onset so close to the gap was not seen either
-    AxisMask missed = 0;
-    std::array<std::uint64_t, max_axes> excluded_from{};
-    excluded_from.fill(never);
+    Exclusions missed;
     for (std::size_t axis = 0; axis < max_axes; ++axis) {
         const std::uint64_t onset = voted.excluded_from[axis];
         const bool unseen = onset != never && absence_.end != 0 && onset + warm_up >= absence_.first && onset < absence_.end + warm_up;
         if (!unseen || !has_axis(voted.isolated_mask & ~last_.isolated_mask, axis)) continue;
-        missed |= axis_bit(axis);
-        excluded_from[axis] = onset;
+        missed[axis] = onset;
     }
-    if (missed != 0) monitor_->adopt(excluded_from);
+    if (missed.mask() != 0) monitor_->adopt(missed);
 }
 
-void ParityFdi::remember(std::uint64_t epoch, const std::array<std::uint64_t, max_axes>& excluded_from, Memory& memory)
+void ParityFdi::remember(std::uint64_t epoch, const Exclusions& excluded_from, Memory& memory)
 {
     memory = {epoch, excluded_from, true};
     if (monitor_) adopt_memories();
@@ -235,17 +225,14 @@ void ParityFdi::adopt_memories()
     if (!adopting_) return;
     for (const Memory* memory : {&of_lane_, &of_voters_}) {
         if (!memory->known) continue;
-        auto excluded_from = memory->excluded_from;
-        if (memory->epoch != intake_.description()->epoch) {
-            for (auto& sequence : excluded_from) sequence = sequence == never ? never : 0;
-        }
-        monitor_->adopt(excluded_from);
+        const bool same_epoch = memory->epoch == intake_.description()->epoch;
+        monitor_->adopt(same_epoch ? memory->excluded_from : memory->excluded_from.in_new_epoch());
     }
 }
 
 void ParityFdi::on_command(const FaultCommand& command)
 {
-    if (command.action != static_cast<std::uint8_t>(CommandAction::readmit)) return;
+    if (action_of(command) != CommandAction::readmit) return;
     if (const AxisMask still = monitor_ ? monitor_->contradicted(command.axes) : 0; still != 0)
         return answer(command, false, fmt::format("does not readmit what still disagrees with the others: {}", describe(still)));
     const bool returned = monitor_ && monitor_->readmit(command.axes);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "quorient/fdi/fault_monitor.hpp"
+#include "quorient/messages/exclusions.hpp"
 #include "quorient/runtime/frame_intake.hpp"
 #include "quorient/runtime/node.hpp"
 #include "quorient/system/system.hpp"
@@ -18,7 +19,7 @@ private:
     /// What others say of exclusions.
     struct Memory {
         std::uint64_t epoch = 0;
-        std::array<std::uint64_t, max_axes> excluded_from{};
+        Exclusions excluded_from;
         bool known = false;
     };
 
@@ -40,7 +41,7 @@ private:
     void assess(const SensorFrame& frame);
     std::string describe(AxisMask axes) const;
     void tell_changes(const FaultVerdict& verdict);
-    void remember(std::uint64_t epoch, const std::array<std::uint64_t, max_axes>& excluded_from, Memory& memory);
+    void remember(std::uint64_t epoch, const Exclusions& excluded_from, Memory& memory);
     void adopt_memories();
     void adopt_missed(const VotedAttitude& voted);
     bool look_at_readiness();  ///< @returns whether that is over

@@ -1,6 +1,7 @@
 #include "describe.hpp"
 
-#include "quorient/runtime/text.hpp"
+#include "quorient/messages/meaning.hpp"
+#include "quorient/messages/name.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -11,7 +12,7 @@ ClusterDescription describe(const geometry::SensorCluster& cluster)
 {
     ClusterDescription description;
     description.interval_s = cluster.interval_s;
-    description.kind = static_cast<std::uint8_t>(cluster.kind);
+    description.kind = octet(cluster.kind);
     description.axis_count = static_cast<std::uint8_t>(cluster.size());
     std::size_t instruments = 0;
     for (std::size_t axis = 0; axis < cluster.size(); ++axis) {
@@ -26,7 +27,7 @@ ClusterDescription describe(const geometry::SensorCluster& cluster)
     description.instrument_count = static_cast<std::uint8_t>(instruments);
     for (std::size_t i = 0; i < instruments; ++i) {
         const bool named = i < cluster.instrument_name.size() && !cluster.instrument_name[i].empty();
-        runtime::copy_text(named ? cluster.instrument_name[i] : fmt::format("G{}", i + 1), description.instrument_name[i]);
+        copy_text(named ? cluster.instrument_name[i] : fmt::format("G{}", i + 1), description.instrument_name[i]);
     }
     return description;
 }

@@ -1,9 +1,10 @@
 #include "describe.hpp"
 #include "quorient/attitude/levelling.hpp"
-#include "quorient/attitude/quaternion.hpp"
+#include "quorient/rotation/quaternion.hpp"
+#include "quorient/messages/meaning.hpp"
+#include "quorient/messages/name.hpp"
 #include "quorient/recording/merge.hpp"
 #include "quorient/recording/rest_statistics.hpp"
-#include "quorient/runtime/text.hpp"
 #include "sources.hpp"
 
 #include <fmt/format.h>
@@ -128,8 +129,8 @@ std::optional<std::string> difference(const ClusterDescription& calibrated, cons
 {
     if (calibrated.axis_count != log.axis_count) return fmt::format("{} axes, the log has {}", calibrated.axis_count, log.axis_count);
     for (std::size_t axis = 0; axis < log.axis_count; ++axis) {
-        const auto theirs = runtime::text_of(calibrated.instrument_name[calibrated.instrument[axis]]);
-        const auto ours = runtime::text_of(log.instrument_name[log.instrument[axis]]);
+        const auto theirs = text_of(calibrated.instrument_name[calibrated.instrument[axis]]);
+        const auto ours = text_of(log.instrument_name[log.instrument[axis]]);
         if (!ours.empty() && theirs != ours) return fmt::format("axis {} is of instrument {}, in the log of {}", axis, theirs, ours);
     }
     return std::nullopt;
@@ -138,7 +139,7 @@ std::optional<std::string> difference(const ClusterDescription& calibrated, cons
 void state_attitude(ClusterDescription& description, const std::array<double, 4>& attitude, InitialAttitude known)
 {
     description.initial_attitude = attitude;
-    description.initial_attitude_known = static_cast<std::uint8_t>(known);
+    description.initial_attitude_known = octet(known);
 }
 
 /// Roll and pitch from the mean specific force of all accelerometers, which stand as the gyros do.
@@ -196,7 +197,7 @@ tl::expected<ClusterDescription, std::string> describe_log(recording::Reader& re
     description.unit = settings.process.node.unit;
     if (levelled) state_attitude(description, attitude::to_array(*levelled), InitialAttitude::measured);
     if (settings.initial_attitude) state_attitude(description, *settings.initial_attitude, InitialAttitude::stated);
-    runtime::copy_text(settings.unit_name, description.name);
+    copy_text(settings.unit_name, description.name);
     return description;
 }
 

@@ -1,6 +1,6 @@
 #include "describe.hpp"
 #include "imu_alignment.hpp"
-#include "quorient/runtime/text.hpp"
+#include "quorient/messages/name.hpp"
 #include "sources.hpp"
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ public:
         description_.initial_attitude_known =
             static_cast<std::uint8_t>(settings.initial_attitude ? InitialAttitude::stated : InitialAttitude::unknown);
         if (settings.initial_attitude) description_.initial_attitude = *settings.initial_attitude;
-        runtime::copy_text(settings.unit_name, description_.name);
+        copy_text(settings.unit_name, description_.name);
         if (settings.kind == SensorKind::accelerometer) return;  // moved to the body's origin already
         for (std::size_t axis = 0; axis < description_.axis_count; ++axis) {
             const auto& place = settings_.imus[description_.instrument[axis]].position_m;

@@ -1,6 +1,7 @@
 #include "sensor_publisher.hpp"
 
-#include "quorient/runtime/text.hpp"
+#include "quorient/messages/meaning.hpp"
+#include "quorient/messages/name.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -44,8 +45,8 @@ SensorPublisher::SensorPublisher(const system::SensorSettings& settings, std::un
 
 void SensorPublisher::on_status(const ServiceStatus& status)
 {
-    if (started_ || status.unit != settings_.process.node.unit || status.state < static_cast<std::uint8_t>(ServiceState::ready)) return;
-    const auto waited_for = missing_.find(runtime::text_of(status.name));
+    if (started_ || status.unit != settings_.process.node.unit || status.state < octet(ServiceState::ready)) return;
+    const auto waited_for = missing_.find(text_of(status.name));
     if (waited_for == missing_.end()) return;
     missing_.erase(waited_for);
     if (missing_.empty()) start();
@@ -61,7 +62,7 @@ void SensorPublisher::start()
                      fmt::format("starts after {} s without {}", settings_.wait_s, fmt::join(missing_, ", ")));
     node_.report(EventCode::started, Severity::info, {source_->description().epoch, 0}, 0,
                  fmt::format("{} {} at {:.4g} Hz", source_->description().axis_count,
-                             source_->description().kind == static_cast<std::uint8_t>(SensorKind::vessel_rates) ? "channels" : "axes",
+                             kind_of(source_->description()) == SensorKind::vessel_rates ? "channels" : "axes",
                              1 / source_->description().interval_s));
     node_.set_state(ServiceState::running);
     start_ns_ = node_.clock().steady_ns();
@@ -124,14 +125,14 @@ bool SensorPublisher::publish(std::uint64_t sequence)
 void SensorPublisher::on_command(const FaultCommand& command)
 {
     const auto identity = identity_of(frame_);
-    if (command.action == static_cast<std::uint8_t>(CommandAction::inject)) {
+    if (action_of(command) == CommandAction::inject) {
         const auto fault = simulation::from_command(command, scenario_s());
         const auto added = source_->faults().add(fault);
         if (added)
             node_.report(EventCode::fault_injected, Severity::info, identity, command.axes, "will inject " + simulation::to_string(fault),
                          command.request);
         else node_.report(EventCode::command_refused, Severity::warning_low, identity, command.axes, added.error(), command.request);
-    } else if (command.action == static_cast<std::uint8_t>(CommandAction::clear)) {
+    } else if (action_of(command) == CommandAction::clear) {
         if (command.axes == 0) source_->faults().clear();
         else source_->faults().clear(command.axes);
         node_.report(EventCode::fault_cleared, Severity::info, identity, command.axes, "faults cleared", command.request);

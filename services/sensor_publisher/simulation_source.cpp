@@ -1,5 +1,6 @@
 #include "describe.hpp"
-#include "quorient/runtime/text.hpp"
+#include "quorient/messages/meaning.hpp"
+#include "quorient/messages/name.hpp"
 #include "sources.hpp"
 
 namespace quorient::sensor {
@@ -16,8 +17,8 @@ public:
         description_.revision = 1;
         description_.unit = settings.process.node.unit;
         description_.initial_attitude = settings.initial_attitude.value_or(instrument_.initial_attitude());
-        description_.initial_attitude_known = static_cast<std::uint8_t>(InitialAttitude::stated);
-        runtime::copy_text(settings.unit_name, description_.name);
+        description_.initial_attitude_known = octet(InitialAttitude::stated);
+        copy_text(settings.unit_name, description_.name);
     }
 
     const ClusterDescription& description() const override { return description_; }

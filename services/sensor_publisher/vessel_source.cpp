@@ -1,5 +1,5 @@
 #include "describe.hpp"
-#include "quorient/runtime/text.hpp"
+#include "quorient/messages/name.hpp"
 #include "quorient/simulation/vessel.hpp"
 #include "sources.hpp"
 
@@ -15,7 +15,7 @@ public:
         description_.epoch = epoch;
         description_.revision = 1;
         description_.unit = settings.process.node.unit;
-        runtime::copy_text(settings.unit_name, description_.name);
+        copy_text(settings.unit_name, description_.name);
     }
 
     const ClusterDescription& description() const override { return description_; }

@@ -4,7 +4,6 @@
 #include "quorient/bus/local_bus.hpp"
 #include "quorient/bus/topics.hpp"
 #include "quorient/runtime/event_loop.hpp"
-#include "quorient/runtime/text.hpp"
 #include "quorient/system/system.hpp"
 #include "sources.hpp"
 

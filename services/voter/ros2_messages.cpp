@@ -1,8 +1,9 @@
 #include "ros2_messages.hpp"
 
 #include "quorient/messages/codes.hpp"
-#include "quorient/runtime/text.hpp"
-#include "quorient/runtime/words.hpp"
+#include "quorient/messages/meaning.hpp"
+#include "quorient/messages/name.hpp"
+#include "quorient/messages/words.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/LU>
@@ -21,8 +22,8 @@ constexpr double not_measured = -1;
 
 bool has_orientation(const VotedAttitude& voted)
 {
-    const auto mode = static_cast<AttitudeMode>(voted.mode);
-    return voted.level != static_cast<std::uint8_t>(VoteLevel::lost) && mode != AttitudeMode::lost && mode != AttitudeMode::initialising;
+    const auto mode = mode_of(voted);
+    return level_of(voted) != VoteLevel::lost && mode != AttitudeMode::lost && mode != AttitudeMode::initialising;
 }
 
 /// The next status of the array; nothing when it is full.
@@ -31,10 +32,10 @@ DiagnosticStatus* next(DiagnosticArray& array, std::uint32_t unit, const std::st
     if (array.count == array.status.size()) return nullptr;
     auto& status = array.status[array.count++];
     status = {};
-    status.level = static_cast<std::uint8_t>(level);
-    runtime::copy_text(fmt::format("quorient: {}", name), status.name);
-    runtime::copy_text(message, status.message);
-    runtime::copy_text(fmt::format("unit {}", unit), status.hardware_id);
+    status.level = octet(level);
+    copy_text(fmt::format("quorient: {}", name), status.name);
+    copy_text(message, status.message);
+    copy_text(fmt::format("unit {}", unit), status.hardware_id);
     return &status;
 }
 
@@ -42,8 +43,8 @@ void add(DiagnosticStatus* status, std::string_view key, const std::string& valu
 {
     if (!status || status->value_count == status->values.size()) return;
     auto& entry = status->values[status->value_count++];
-    runtime::copy_text(key, entry.key);
-    runtime::copy_text(value, entry.value);
+    copy_text(key, entry.key);
+    copy_text(value, entry.value);
 }
 
 void add_axes(const VotedAttitude& voted, const ClusterDescription& description, DiagnosticArray& array)
@@ -51,7 +52,7 @@ void add_axes(const VotedAttitude& voted, const ClusterDescription& description,
     const std::size_t count = std::min<std::size_t>(description.axis_count, max_axes);
     for (std::size_t axis = 0; axis < count; ++axis) {
         const auto instrument = std::min<std::size_t>(description.instrument[axis], max_axes - 1);
-        const auto name = fmt::format("axis {} ({})", axis, runtime::text_of(description.instrument_name[instrument]));
+        const auto name = fmt::format("axis {} ({})", axis, axis_name(description, axis));
         if (has_axis(voted.isolated_mask, axis))
             add(next(array, voted.unit, name, Level::error, "isolated"), "first bad frame", std::to_string(voted.excluded_from[axis]));
         else if (has_axis(voted.suspect_mask, axis)) next(array, voted.unit, name, Level::warning, "suspect");
@@ -67,13 +68,13 @@ void add_lanes(const VotedAttitude& voted, const std::vector<voting::LaneSetting
         const auto why = static_cast<LaneExclusion>(voted.excluded_why[place]);
         if (lanes[place].lane == voted.primary_lane) next(array, voted.unit, name, Level::ok, "primary");
         else if ((voted.vouching_mask >> place & 1U) != 0) next(array, voted.unit, name, Level::ok, "vouches");
-        else next(array, voted.unit, name, why == LaneExclusion::silent ? Level::error : Level::warning, runtime::to_string(why));
+        else next(array, voted.unit, name, why == LaneExclusion::silent ? Level::error : Level::warning, to_string(why));
     }
 }
 
 Level level_of(const VotedAttitude& voted)
 {
-    switch (static_cast<VoteLevel>(voted.level)) {
+    switch (level_of(voted)) {
         case VoteLevel::full:
             return Level::ok;
         case VoteLevel::degraded:
@@ -128,8 +129,8 @@ void to_diagnostics(const VotedAttitude& voted, const ClusterDescription* descri
                     const std::vector<VoterHeard>& voters, DiagnosticArray& array)
 {
     array.count = 0;
-    auto* own = next(array, voted.unit, "attitude", level_of(voted), runtime::to_string(static_cast<VoteLevel>(voted.level)));
-    add(own, "mode", std::string{runtime::to_string(static_cast<AttitudeMode>(voted.mode))});
+    auto* own = next(array, voted.unit, "attitude", level_of(voted), to_string(level_of(voted)));
+    add(own, "mode", std::string{to_string(mode_of(voted))});
     add(own, "angle sigma [rad]", fmt::format("{:.3g}", voted.angle_sigma_rad));
     add(own, "lanes' spread [rad]", fmt::format("{:.3g}", voted.spread_rad));
     add(own, "frame", std::to_string(voted.sequence));

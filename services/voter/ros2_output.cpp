@@ -1,6 +1,6 @@
 #include "ros2_output.hpp"
 
-#include "quorient/runtime/text.hpp"
+#include "quorient/messages/name.hpp"
 
 namespace quorient::voter {
 
@@ -57,7 +57,7 @@ void Ros2Output::on_voted(const VotedAttitude& voted)
     }
     auto imu = to_imu(voted, rate_covariance_);
     imu.stamp_ns = stamp_ns;
-    runtime::copy_text(settings_.frame_id, imu.frame_id);
+    copy_text(settings_.frame_id, imu.frame_id);
     imus_.publish(imu);
 }
 

@@ -1,6 +1,6 @@
 #include "voter.hpp"
 
-#include "quorient/runtime/text.hpp"
+#include "quorient/messages/name.hpp"
 
 namespace quorient::voter {
 
@@ -77,7 +77,7 @@ void VoterService::drain()
         node_.set_state(ServiceState::running);
     }
     voting::VoterEvent event;
-    while (brain_.next_event(event)) node_.report(event.code, event.severity, event.identity, event.axes, runtime::text_of(event.text));
+    while (brain_.next_event(event)) node_.report(event.code, event.severity, event.identity, event.axes, text_of(event.text));
     copy_counters();
     poll_timer_.set(brain_.next_deadline_ns());
 }

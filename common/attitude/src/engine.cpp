@@ -1,4 +1,5 @@
 #include "engine.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -276,7 +277,7 @@ AttitudeState Integrator::Engine::state() const
     }
     if (public_.lost) mode = AttitudeMode::lost;
     if (!initialised_ || catching_up_ || !epoch_known_) mode = AttitudeMode::initialising;
-    state.mode = static_cast<std::uint8_t>(mode);
+    state.mode = octet(mode);
     state.angle_sigma_rad = std::sqrt(variance);
     return state;
 }

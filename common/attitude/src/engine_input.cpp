@@ -64,7 +64,7 @@ void Integrator::Engine::enter_epoch(std::uint64_t epoch)
     history_dropped_ = false;
     trust_.begin_epoch(epoch);
     trust_.fold(history_);
-    for (auto& from : taken_over_.excluded_from) from = from == never ? never : 0;
+    taken_over_.excluded_from = taken_over_.excluded_from.in_new_epoch();
     if (first && !stated) return;
 
     Standing start = public_;

@@ -1,4 +1,6 @@
 #include "opinion.hpp"
+#include "quorient/messages/exclusions.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,14 +8,6 @@
 
 namespace quorient::attitude {
 namespace {
-
-AxisMask mask_of(const std::array<std::uint64_t, max_axes>& excluded_from)
-{
-    AxisMask mask = 0;
-    for (std::size_t axis = 0; axis < max_axes; ++axis)
-        if (excluded_from[axis] != never) mask |= axis_bit(axis);
-    return mask;
-}
 
 }  // namespace
 
@@ -36,13 +30,13 @@ Opinion opinion_of(const FaultVerdict& verdict)
     Opinion opinion;
     opinion.sequence = verdict.sequence;
     opinion.excluded_from = verdict.excluded_from;
-    opinion.excluded = mask_of(verdict.excluded_from);
+    opinion.excluded = verdict.excluded_from.mask();
     opinion.suspects = verdict.suspect_mask;
     const std::size_t count = std::min<std::size_t>(verdict.candidate_count, max_candidates);
     for (std::size_t i = 0; i < count; ++i) opinion.candidates |= verdict.candidate_set[i];
     for (const double residual : verdict.residual)
         if (std::isfinite(residual)) opinion.residual = std::max(opinion.residual, std::abs(residual));
-    if (verdict.state <= static_cast<std::uint8_t>(VerdictState::blind)) opinion.state = static_cast<VerdictState>(verdict.state);
+    opinion.state = state_of(verdict);
     return opinion;
 }
 
@@ -52,7 +46,7 @@ Opinion opinion_of(const VotedAttitude& voted)
     opinion.sequence = voted.sequence;
     for (std::size_t axis = 0; axis < max_axes; ++axis)
         if (has_axis(voted.isolated_mask, axis)) opinion.excluded_from[axis] = std::min(voted.excluded_from[axis], voted.sequence);
-    opinion.excluded = mask_of(opinion.excluded_from);
+    opinion.excluded = opinion.excluded_from.mask();
     opinion.state = VerdictState::isolated;
     return opinion;
 }

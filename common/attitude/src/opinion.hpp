@@ -2,6 +2,7 @@
 
 #include "quorient/attitude/body_increment.hpp"
 #include "quorient/messages/codes.hpp"
+#include "quorient/messages/exclusions.hpp"
 #include "quorient/messages/fault_verdict.hpp"
 #include "quorient/messages/voted_attitude.hpp"
 
@@ -13,7 +14,7 @@ namespace quorient::attitude {
 /// What a verdict says about trust: the part of it that the history keeps with the frame it is about.
 struct Opinion {
     std::uint64_t sequence = 0;
-    std::array<std::uint64_t, max_axes> excluded_from = detail::all_never();
+    Exclusions excluded_from;
     AxisMask excluded = 0;    ///< axes with an excluded_from
     AxisMask taken_over = 0;  ///< those of them that not the verdict excludes, but the voters did (take_over)
     AxisMask known = 0;       ///< excluded as far as verdicts up to this one say; more than `excluded` where it cannot clear

@@ -1,4 +1,5 @@
 #include "trust.hpp"
+#include "quorient/messages/exclusions.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -15,11 +16,7 @@ void for_each_axis(AxisMask mask, Function function)
 // One walk from the newest opinion to the oldest.
 class Fold {
 public:
-    explicit Fold(History& history) : history_(history)
-    {
-        from_.fill(never);
-        latest_from_.fill(never);
-    }
+    explicit Fold(History& history) : history_(history) {}
 
     // @param index  of the opinion's record; history size = newer than all, npos = older than all
     void hear(const Opinion& opinion, std::size_t index)
@@ -38,7 +35,7 @@ public:
         return active_;
     }
 
-    const std::array<std::uint64_t, max_axes>& latest_from() const { return latest_from_; }
+    const Exclusions& latest_from() const { return latest_from_; }
 
     static constexpr std::size_t before_all = static_cast<std::size_t>(-1);
 
@@ -75,8 +72,8 @@ private:
     AxisMask active_ = 0;  // excluded at the frame the walk has come to
     AxisMask open_ = 0;    // no clearing verdict since the newest opinion on the run
     bool latest_known_ = false;
-    std::array<std::uint64_t, max_axes> from_{};
-    std::array<std::uint64_t, max_axes> latest_from_{};
+    Exclusions from_{};
+    Exclusions latest_from_;
 };
 
 }  // namespace
@@ -136,11 +133,9 @@ void Trust::begin_epoch(std::uint64_t epoch)
     epoch_ = epoch;
     if (early_epoch_ != epoch) early_count_ = 0;
     old_ = Opinion{};
-    for (std::size_t axis = 0; axis < max_axes; ++axis) {
-        if (latest_from_[axis] == never) continue;
-        old_.excluded_from[axis] = latest_from_[axis] = 0;
-        old_.excluded |= axis_bit(axis);
-    }
+    latest_from_ = latest_from_.in_new_epoch();
+    old_.excluded_from = latest_from_;
+    old_.excluded = latest_from_.mask();
 }
 
 void Trust::fold(History& history)
@@ -157,10 +152,7 @@ void Trust::fold(History& history)
 
 AxisMask Trust::excluded_at(std::uint64_t sequence) const
 {
-    AxisMask mask = 0;
-    for (std::size_t axis = 0; axis < max_axes; ++axis)
-        if (latest_from_[axis] <= sequence) mask |= axis_bit(axis);
-    return mask;
+    return latest_from_.mask_at(sequence);
 }
 
 }  // namespace quorient::attitude

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "history.hpp"
+#include "quorient/messages/exclusions.hpp"
 
 #include <array>
 #include <cstddef>
@@ -15,8 +16,6 @@ namespace quorient::attitude {
 /// re-admission forgives the future, not the past.
 class Trust {
 public:
-    Trust() { latest_from_.fill(never); }
-
     /// A verdict about a frame still to come, of this epoch or a later one. When the store is full the farthest one is lost.
     void hear_early(std::uint64_t epoch, const Opinion& opinion);
 
@@ -39,7 +38,7 @@ public:
     void fold(History& history);
 
     /// As of the newest verdict known: first contaminated sequence of each axis, `never` where it is not excluded.
-    const std::array<std::uint64_t, max_axes>& latest_from() const { return latest_from_; }
+    const Exclusions& latest_from() const { return latest_from_; }
 
     /// Axes excluded at a frame newer than all verdicts.
     AxisMask excluded_at(std::uint64_t sequence) const;
@@ -55,7 +54,7 @@ private:
     std::uint64_t early_epoch_ = 0;
     std::uint64_t epoch_ = 0;
     Opinion old_;  // all that left the history, merged
-    std::array<std::uint64_t, max_axes> latest_from_{};
+    Exclusions latest_from_;
 };
 
 }  // namespace quorient::attitude

@@ -1,5 +1,7 @@
 #include "allocation_count.hpp"
 #include "scenario.hpp"
+#include "quorient/messages/exclusions.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <gtest/gtest.h>
 #include <cmath>
@@ -36,7 +38,7 @@ TEST_F(AnIntegrator, follows_the_truth_to_rounding_and_reports_rate_and_axes)
     EXPECT_EQ(state.used_mask, cluster.all());
     EXPECT_EQ(mode_of(state), AttitudeMode::normal);
     EXPECT_EQ(state.reset_counter, 0u);
-    EXPECT_EQ(state.excluded_from, detail::all_never());
+    EXPECT_EQ(state.excluded_from, Exclusions{});
     const Eigen::Vector3d mean_rate = motion.increment(9.99L, 0.01L) / 0.01;
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(state.rate_rad_s[i], mean_rate[static_cast<Eigen::Index>(i)], 1e-13);
 }
@@ -227,7 +229,7 @@ VotedAttitude voted_at(const Instrument& instrument, std::uint64_t sequence)
     voted.attitude = to_array(instrument.attitude_after(sequence));
     voted.angle_sigma_rad = 1e-4;
     voted.isolated_mask = axis_bit(2);
-    voted.excluded_from = detail::all_never();
+    voted.excluded_from = Exclusions{};
     voted.excluded_from[2] = 5;
     voted.reset_counter = 7;
     return voted;

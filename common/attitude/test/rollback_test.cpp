@@ -1,4 +1,5 @@
 #include "scenario.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <gtest/gtest.h>
 #include <algorithm>

@@ -4,6 +4,7 @@
 #include "quorient/attitude/body_increment.hpp"
 #include "quorient/attitude/integrator.hpp"
 #include "quorient/geometry/layouts.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <functional>
 #include <random>
@@ -60,7 +61,7 @@ public:
         frame.sequence = sequence_;
         frame.interval_s = h;
         frame.sample_time_ns = static_cast<std::int64_t>(std::llround(h * 1e9)) * static_cast<std::int64_t>(sequence_ + 1);
-        frame.kind = static_cast<std::uint8_t>(SensorKind::gyro);
+        frame.kind = octet(SensorKind::gyro);
         frame.axis_count = static_cast<std::uint8_t>(cluster_.size());
         frame.valid_mask = cluster_.all();
         const Eigen::Vector3d body = motion_.increment(static_cast<Wide>(sequence_) * h, h);
@@ -105,8 +106,8 @@ inline FaultVerdict verdict_on(std::uint64_t sequence, VerdictState state = Verd
     FaultVerdict verdict;
     verdict.epoch = 1;
     verdict.sequence = sequence;
-    verdict.kind = static_cast<std::uint8_t>(SensorKind::gyro);
-    verdict.state = static_cast<std::uint8_t>(state);
+    verdict.kind = octet(SensorKind::gyro);
+    verdict.state = octet(state);
     return verdict;
 }
 
@@ -143,7 +144,7 @@ inline void finish(Integrator& integrator)
 
 inline AttitudeMode mode_of(const AttitudeState& state)
 {
-    return static_cast<AttitudeMode>(state.mode);
+    return mode_of(state);
 }
 
 inline double angle_to(const AttitudeState& state, const Quaternion& truth)

@@ -1,4 +1,6 @@
 #include "scenario.hpp"
+#include "quorient/messages/exclusions.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <gtest/gtest.h>
 #include <algorithm>
@@ -17,7 +19,7 @@ const ClassicConing motion(20, 2);
 std::vector<FaultVerdict> eventful_verdicts(std::mt19937_64& random, std::size_t axes)
 {
     std::vector<FaultVerdict> verdicts;
-    std::array<std::uint64_t, max_axes> from = detail::all_never();
+    Exclusions from;
     for (std::uint64_t sequence = 0; sequence < 120; ++sequence) {
         const std::size_t axis = random() % axes;
         if (random() % 12 == 0) from[axis] = sequence - std::min<std::uint64_t>(sequence, random() % 40);  // isolated, or revised
@@ -26,7 +28,7 @@ std::vector<FaultVerdict> eventful_verdicts(std::mt19937_64& random, std::size_t
                                     VerdictState::blind,   VerdictState::ambiguous, VerdictState::warming_up};
         FaultVerdict verdict = verdict_on(sequence, states[random() % 3 == 0 ? random() % states.size() : 2]);
         verdict.excluded_from = from;
-        if (verdict.state == static_cast<std::uint8_t>(VerdictState::warming_up)) verdict.excluded_from = detail::all_never();
+        if (state_of(verdict) == VerdictState::warming_up) verdict.excluded_from = Exclusions{};
         verdict.suspect_mask = axis_bit(axis);
         verdict.candidate_count = 2;
         verdict.candidate_set[0] = axis_bit(axis);

@@ -1,5 +1,8 @@
 #include "quorient/calibration/cluster_file.hpp"
 
+#include "quorient/messages/meaning.hpp"
+#include "quorient/messages/name.hpp"
+
 #include "quorient/geometry/sensor_cluster.hpp"
 #include "quorient/messages/codes.hpp"
 
@@ -21,12 +24,6 @@ constexpr std::array<std::string_view, 4> noise_keys{"along_s", "across_s", "lev
 constexpr std::array<std::string_view, 4> gated_keys{"along_s", "across_s", "axes", "rate"};
 constexpr std::array<std::string_view, 9> axis_keys{"instrument", "direction",   "gain",        "bias_rad_s", "bias_spread_rad_s",
                                                     "sigma_rad",  "quantum_rad", "range_rad_s", "position_m"};
-
-template <std::size_t Size>
-std::string_view text_of(const Name<Size>& name)
-{
-    return {name.data(), static_cast<std::size_t>(std::find(name.begin(), name.end(), '\0') - name.begin())};
-}
 
 std::string triple(const std::array<double, 3>& values)
 {
@@ -207,7 +204,7 @@ tl::expected<CalibratedCluster, std::string> parse_cluster(const std::string& te
     try {
         const YAML::Node root = YAML::Load(text);
         if (reading.is_map_of(root, top_keys)) {
-            cluster.description.kind = static_cast<std::uint8_t>(SensorKind::gyro);
+            cluster.description.kind = octet(SensorKind::gyro);
             const std::string kind = reading.text(root, "kind", 16);
             if (!kind.empty() && kind != "gyro") reading.problem(root["kind"].Mark(), fmt::format("kind must be gyro, got '{}'", kind));
             set_name(cluster.description.name, reading.text(root, "name", 32));

@@ -3,6 +3,7 @@
 #include "quorient/calibration/sample.hpp"
 #include "quorient/messages/cluster_description.hpp"
 #include "quorient/messages/codes.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -55,7 +56,7 @@ inline ClusterDescription nominal_description()
 {
     ClusterDescription description;
     description.interval_s = interval_s;
-    description.kind = static_cast<std::uint8_t>(SensorKind::gyro);
+    description.kind = octet(SensorKind::gyro);
     description.axis_count = 9;
     description.instrument_count = 3;
     for (std::uint8_t axis = 0; axis < 9; ++axis) {

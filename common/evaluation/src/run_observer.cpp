@@ -1,6 +1,8 @@
 #include "quorient/evaluation/run_observer.hpp"
 
 #include "quorient/geometry/sensor_cluster.hpp"
+#include "quorient/messages/meaning.hpp"
+#include "quorient/messages/words.hpp"
 #include "quorient/voting/agreement.hpp"
 
 #include <algorithm>
@@ -46,6 +48,11 @@ LaneRecord* RunObserver::lane_of_detector(std::uint32_t detector)
         if (system_.lanes[i].detector.detector == detector) return &lanes_[i];
     }
     return nullptr;
+}
+
+std::string RunObserver::names_of(AxisMask axes) const
+{
+    return description_ ? axis_names(*description_, axes) : axis_numbers(axes);
 }
 
 double RunObserver::time_s(Identity identity) const
@@ -105,7 +112,7 @@ void RunObserver::on_verdict(const FaultVerdict& verdict)
     lane->isolated_ever |= verdict.isolated_mask;
     lane->isolated.update(verdict.isolated_mask, static_cast<double>(verdict.sample_time_ns) * 1e-9);
     ++lane->verdicts;
-    const auto state = static_cast<VerdictState>(verdict.state);
+    const auto state = state_of(verdict);
     const bool suspicious = state == VerdictState::suspect || state == VerdictState::ambiguous || state == VerdictState::blind;
     lane->suspicious += suspicious ? 1 : 0;
     if (verdict.isolated_mask == 0 || lane->isolated_at) return;
@@ -134,7 +141,7 @@ void RunObserver::on_voted(const VotedAttitude& voted)
     if (!voted_.heard || identity_of(voted) >= identity_of(voted_.latest)) voted_.latest = voted;
     voted_.heard = true;
     const bool held =
-        voted.level == static_cast<std::uint8_t>(VoteLevel::coasting) || voted.level == static_cast<std::uint8_t>(VoteLevel::lost);
+        level_of(voted) == VoteLevel::coasting || level_of(voted) == VoteLevel::lost;
     if (held) return;
     if (voted.epoch >= newest_truth_.epoch && voted_sequences_[voted.epoch].insert(voted.sequence).second) ++voted_.frames;
     compare(identity_of(voted), voted.attitude, voted_.errors);
@@ -162,7 +169,7 @@ void RunObserver::compare(Identity identity, const std::array<double, 4>& attitu
         if (waiting_.size() < most_waiting) waiting_.push_back({identity, attitude, &errors});
         return;
     }
-    if (truth->second.attitude_known) errors.add(identity, voting::geodesic_angle(attitude, truth->second.attitude));
+    if (truth->second.attitude_known) errors.add(identity, rotation::angle_between(attitude, truth->second.attitude));
 }
 
 void RunObserver::compare_waiting()

@@ -1,6 +1,8 @@
 #include "quorient/fdi/fault_monitor.hpp"
 
 #include "quorient/fdi/make_detector.hpp"
+#include "quorient/messages/exclusions.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <bit>
 #include <utility>
@@ -64,7 +66,7 @@ const FaultVerdict& FaultMonitor::assess(const SensorFrame& frame)
     if (readmission_ && newly != 0) readmission_->excluded(newly, measurement, all_ & ~machine_.isolated());
     after_change(before);
     if (observer_readmission_) {
-        const bool healthy = verdict_.state == static_cast<std::uint8_t>(VerdictState::healthy);
+        const bool healthy = state_of(verdict_) == VerdictState::healthy;
         returning_ = observer_readmission_->watch(*detector_, frame.interval_s, machine_.isolated(), newly, healthy);
     }
 
@@ -75,7 +77,7 @@ const FaultVerdict& FaultMonitor::assess(const SensorFrame& frame)
     return verdict_;
 }
 
-void FaultMonitor::adopt(const std::array<std::uint64_t, max_axes>& excluded_from)
+void FaultMonitor::adopt(const Exclusions& excluded_from)
 {
     const AxisMask before = machine_.isolated();
     machine_.adopt(excluded_from);

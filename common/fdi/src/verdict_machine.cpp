@@ -1,4 +1,6 @@
 #include "quorient/fdi/verdict_machine.hpp"
+#include "quorient/messages/exclusions.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -43,7 +45,7 @@ tl::expected<VerdictMachine, std::string> VerdictMachine::make(const VerdictSett
 VerdictMachine::VerdictMachine(const VerdictSettings& settings, std::size_t axis_count, std::size_t least_axes)
     : settings_(settings), all_(all_axes(axis_count)), least_axes_(static_cast<int>(least_axes))
 {
-    verdict_.state = static_cast<std::uint8_t>(VerdictState::warming_up);
+    verdict_.state = octet(VerdictState::warming_up);
     verdict_.working_mask = all_;
 }
 
@@ -69,7 +71,7 @@ const FaultVerdict& VerdictMachine::update(Identity identity, const Assessment& 
     return verdict_;
 }
 
-void VerdictMachine::adopt(const std::array<std::uint64_t, max_axes>& excluded_from)
+void VerdictMachine::adopt(const Exclusions& excluded_from)
 {
     for (std::size_t axis = 0; axis < max_axes; ++axis) {
         if (excluded_from[axis] == never || !has_axis(all_, axis)) continue;
@@ -84,8 +86,7 @@ AxisMask VerdictMachine::readmit(AxisMask axes)
 {
     const AxisMask returning = axes & verdict_.isolated_mask;
     if (returning == 0) return 0;
-    for (std::size_t axis = 0; axis < max_axes; ++axis)
-        if (has_axis(returning, axis)) verdict_.excluded_from[axis] = never;
+    verdict_.excluded_from.readmit(returning);
     verdict_.isolated_mask &= ~returning;
     verdict_.working_mask |= returning;
     drop_evidence();
@@ -95,8 +96,7 @@ AxisMask VerdictMachine::readmit(AxisMask axes)
 void VerdictMachine::begin_epoch(std::uint64_t epoch)
 {
     verdict_.epoch = epoch;
-    for (std::size_t axis = 0; started_ && axis < max_axes; ++axis)
-        if (has_axis(verdict_.isolated_mask, axis)) verdict_.excluded_from[axis] = 0;
+    verdict_.excluded_from = verdict_.excluded_from.in_new_epoch();
     started_ = true;
     frames_ = 0;
     first_unexplained_ = 0;
@@ -209,7 +209,7 @@ void VerdictMachine::publish(const Evidence& newest, const Assessment& assessmen
     if (std::popcount(verdict_.working_mask) < least_axes_) state = VerdictState::blind;
     const bool learning = newest.outcome == Outcome::warming_up && state == VerdictState::healthy;
     if (learning || frames_ <= settings_.warm_up_frames) state = VerdictState::warming_up;
-    verdict_.state = static_cast<std::uint8_t>(state);
+    verdict_.state = octet(state);
 }
 
 VerdictState VerdictMachine::publish_suspicion(const Evidence& suspicion)

@@ -2,6 +2,8 @@
 
 #include "quorient/fdi/make_detector.hpp"
 #include "quorient/geometry/layouts.hpp"
+#include "quorient/messages/exclusions.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -65,7 +67,7 @@ protected:
             frame.axis_count = 6;
             frame.valid_mask = 0b111111;
             frame.unit = 9;
-            frame.kind = static_cast<std::uint8_t>(SensorKind::gyro);
+            frame.kind = octet(SensorKind::gyro);
             const geometry::AxisVector z = cone_6().axes * rate_rad_s * interval_s;
             for (std::size_t axis = 0; axis < 6; ++axis)
                 frame.increment[axis] = z(static_cast<Eigen::Index>(axis)) * (axis == 1 ? factor : 1) + noise_(random_);
@@ -126,7 +128,7 @@ TEST_F(FaultMonitorTest, answers_an_old_frame_with_the_verdict_it_already_gave)
 
 TEST_F(FaultMonitorTest, adopts_and_readmits_by_command)
 {
-    auto excluded_from = detail::all_never();
+    auto excluded_from = Exclusions{};
     excluded_from[3] = 12;
     monitor_->adopt(excluded_from);
     EXPECT_EQ(detector_->excluded, 0b1000U);
@@ -150,7 +152,7 @@ TEST_F(FaultMonitorTest, readmits_after_a_healthy_time_under_the_excitation_that
     EXPECT_EQ(feed(90, {0.11, 0.22, 0.33}).isolated_mask, 0b10U) << "0.9 s are not 1 s";
     const FaultVerdict& verdict = feed(15, {0.11, 0.22, 0.33});
     EXPECT_EQ(verdict.isolated_mask, 0U);
-    EXPECT_EQ(verdict.state, static_cast<std::uint8_t>(VerdictState::healthy));
+    EXPECT_EQ(verdict.state, octet(VerdictState::healthy));
     EXPECT_EQ(detector_->excluded, 0U);
 }
 
@@ -173,7 +175,7 @@ TEST_F(FaultMonitorTest, does_not_readmit_an_axis_that_is_still_soft)
 TEST_F(FaultMonitorTest, never_readmits_by_itself_what_it_adopted)
 {
     make({.readmit_after_s = 1.0});
-    auto excluded_from = detail::all_never();
+    auto excluded_from = Exclusions{};
     excluded_from[1] = 12;
     monitor_->adopt(excluded_from);
     EXPECT_EQ(feed(3000).isolated_mask, 0b10U);

@@ -5,6 +5,7 @@
 #include "quorient/fdi/fault_monitor.hpp"
 #include "quorient/fdi/vector_predictor.hpp"
 #include "quorient/geometry/layouts.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -63,7 +64,7 @@ public:
             const SensorFrame measured = frame(scenario, sequence);
             if (sequence >= scenario.first_lost && sequence - scenario.first_lost < scenario.lost) continue;
             const FaultVerdict& verdict = monitor_.assess(measured);
-            const auto state = static_cast<VerdictState>(verdict.state);
+            const auto state = state_of(verdict);
             if (verdict.isolated_mask == 0 && state > VerdictState::healthy) ++outcomes.alarms;
             if (monitor_.assessment().statistic > monitor_.assessment().threshold)
                 outcomes.first_suspicious = std::min(outcomes.first_suspicious, sequence);

@@ -1,6 +1,7 @@
 #include "observer_scene.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
 #include "quorient/fdi/observer_design.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
@@ -553,15 +554,15 @@ TEST(VesselMonitor, isolates_latches_and_readmits_the_papers_faults)
     const auto [faulty, contradicted] = play(0.01, 0.01);
     EXPECT_EQ(contradicted[0], 0b10U) << "while its fault lasts";
     EXPECT_EQ(contradicted[1], 0U) << "ten seconds after it";
-    EXPECT_EQ(faulty[0].state, static_cast<std::uint8_t>(VerdictState::healthy));
-    EXPECT_EQ(faulty[1].state, static_cast<std::uint8_t>(VerdictState::isolated)) << "latched, ten seconds after the fault ended";
+    EXPECT_EQ(faulty[0].state, octet(VerdictState::healthy));
+    EXPECT_EQ(faulty[1].state, octet(VerdictState::isolated)) << "latched, ten seconds after the fault ended";
     EXPECT_EQ(faulty[1].isolated_mask, 0b10U);
     EXPECT_NEAR(static_cast<double>(faulty[1].excluded_from[1]), 2000, 2);
     EXPECT_EQ(faulty[1].detectable_remaining, 1) << "the model stands behind the channel that is left";
     EXPECT_EQ(faulty[2].isolated_mask, 0b01U);
     EXPECT_NEAR(static_cast<double>(faulty[2].excluded_from[0]), 5000, 2);
 
-    for (const FaultVerdict& verdict : play(0, 0).first) EXPECT_EQ(verdict.state, static_cast<std::uint8_t>(VerdictState::healthy));
+    for (const FaultVerdict& verdict : play(0, 0).first) EXPECT_EQ(verdict.state, octet(VerdictState::healthy));
 }
 
 TEST(ObserverSettings, are_refused_with_the_reason)

@@ -2,6 +2,8 @@
 // against the events themselves.
 
 #include "quorient/fdi/verdict_machine.hpp"
+#include "quorient/messages/exclusions.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <gtest/gtest.h>
 
@@ -126,7 +128,7 @@ void expect_complete(const FaultVerdict& verdict)
     ASSERT_EQ(excluded, verdict.isolated_mask);
     ASSERT_EQ(verdict.working_mask, all_axes(axis_count) & ~verdict.isolated_mask);
     ASSERT_EQ(verdict.suspect_mask & verdict.isolated_mask, 0U);
-    const auto state = static_cast<VerdictState>(verdict.state);
+    const auto state = state_of(verdict);
     const bool troubled = (verdict.isolated_mask | verdict.suspect_mask | verdict.candidate_count) != 0;
     ASSERT_FALSE(state == VerdictState::healthy && troubled);
     ASSERT_FALSE(state == VerdictState::isolated && verdict.isolated_mask == 0);
@@ -218,7 +220,7 @@ struct Play {
     void adopt()
     {
         if (published.empty()) return;
-        auto excluded_from = detail::all_never();
+        auto excluded_from = Exclusions{};
         const std::size_t axis = random.below(axis_count);
         excluded_from[axis] = random.below(static_cast<unsigned>(next.sequence) + 1);
         const std::uint64_t earliest = std::min(excluded_from[axis], machine.verdict().excluded_from[axis]);

@@ -1,4 +1,6 @@
 #include "quorient/fdi/verdict_machine.hpp"
+#include "quorient/messages/exclusions.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <gtest/gtest.h>
 
@@ -36,7 +38,7 @@ protected:
         return machine_.verdict();
     }
 
-    VerdictState state() const { return static_cast<VerdictState>(machine_.verdict().state); }
+    VerdictState state() const { return state_of(machine_.verdict()); }
 
     VerdictSettings settings_;
     VerdictMachine machine_ = VerdictMachine::make(settings_, 6).value();
@@ -190,7 +192,7 @@ TEST_F(VerdictMachineTest, isolates_right_after_the_warm_up_what_was_faulty_from
     auto machine = VerdictMachine::make(settings_, 6).value();
     for (std::uint64_t sequence = 0; sequence < settings_.warm_up_frames; ++sequence) {
         machine.update({1, sequence}, naming(axis_1));
-        EXPECT_EQ(machine.verdict().state, static_cast<std::uint8_t>(VerdictState::warming_up));
+        EXPECT_EQ(machine.verdict().state, octet(VerdictState::warming_up));
     }
     machine.update({1, settings_.warm_up_frames}, naming(axis_1));
     EXPECT_EQ(machine.isolated(), axis_1);
@@ -200,7 +202,7 @@ TEST_F(VerdictMachineTest, isolates_right_after_the_warm_up_what_was_faulty_from
 TEST_F(VerdictMachineTest, adopts_a_lane_s_exclusions_before_the_first_frame)
 {
     auto machine = VerdictMachine::make(settings_, 6).value();
-    auto excluded_from = detail::all_never();
+    auto excluded_from = Exclusions{};
     excluded_from[2] = 1681;
     machine.adopt(excluded_from);
     machine.update({1, 5000}, healthy());
@@ -213,7 +215,7 @@ TEST_F(VerdictMachineTest, adopting_keeps_the_earlier_onset_of_an_axis_already_e
 {
     feed(naming(axis_1), 2);
     const auto onset = machine_.verdict().excluded_from[1];
-    auto later = detail::all_never();
+    auto later = Exclusions{};
     later[1] = onset + 100;
     machine_.adopt(later);
     EXPECT_EQ(machine_.verdict().excluded_from[1], onset);

@@ -1,6 +1,8 @@
 #include "quorient/geometry/sensor_cluster.hpp"
 
 #include "quorient/geometry/redundancy.hpp"
+#include "quorient/messages/meaning.hpp"
+#include "quorient/messages/name.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -98,12 +100,6 @@ Problem problem_with(const ClusterDescription& description)
     return problem_with("the range", description.range, n);
 }
 
-template <std::size_t Size>
-std::string_view text_of(const Name<Size>& name)
-{
-    return {name.data(), static_cast<std::size_t>(std::ranges::find(name, '\0') - name.begin())};
-}
-
 AxisVector first(const std::array<double, max_axes>& values, std::size_t count)
 {
     return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(count));
@@ -158,7 +154,7 @@ tl::expected<SensorCluster, std::string> make_cluster(const ClusterDescription& 
     cluster->quantum = first(description.quantum, n);
     cluster->range = first(description.range, n);
     cluster->interval_s = description.interval_s;
-    cluster->kind = static_cast<SensorKind>(description.kind);
+    cluster->kind = kind_of(description);
     return cluster;
 }
 

@@ -1,4 +1,5 @@
 #include "readers.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <fmt/format.h>
 #include <cmath>
@@ -29,7 +30,7 @@ ClusterDescription board()
 {
     ClusterDescription board;
     board.interval_s = mimu::nominal_ticks / mimu::ticks_per_second;
-    board.kind = static_cast<std::uint8_t>(SensorKind::gyro);
+    board.kind = octet(SensorKind::gyro);
     board.axis_count = 3 * mimu::imus;
     board.instrument_count = mimu::imus;
     set_name(board.name, "MIMU4444");

@@ -1,4 +1,5 @@
 #include "readers.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <fmt/format.h>
 #include <cmath>
@@ -11,7 +12,7 @@ TextReader::TextReader(const std::filesystem::path& file, std::uint64_t header_l
     std::string_view line;
     while (lines_.line_number() < header_line && lines_.next(line) != LineSource::Outcome::end) {
     }
-    description_.kind = static_cast<std::uint8_t>(SensorKind::gyro);
+    description_.kind = octet(SensorKind::gyro);
     description_.interval_s = static_cast<double>(nominal_ns) * 1e-9;
 }
 

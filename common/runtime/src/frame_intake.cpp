@@ -1,5 +1,6 @@
 #include "quorient/runtime/frame_intake.hpp"
 
+#include "quorient/messages/meaning.hpp"
 #include "quorient/messages/sample_time.hpp"
 
 #include <algorithm>
@@ -37,7 +38,7 @@ constexpr std::uint32_t restart_after = 5;
 const char* FrameIntake::problem_of(const ClusterDescription& description)
 {
     // Directions in space take three to measure a rotation; a vessel's channels need no directions.
-    const bool channels = description.kind == static_cast<std::uint8_t>(SensorKind::vessel_rates);
+    const bool channels = kind_of(description) == SensorKind::vessel_rates;
     if (description.axis_count < (channels ? 1 : 3) || description.axis_count > max_axes)
         return channels ? "it must have 1 to 24 channels" : "it must have 3 to 24 axes";
     if (!is_interval(description.interval_s)) return "its interval must be 1 ns to an hour";
@@ -46,7 +47,7 @@ const char* FrameIntake::problem_of(const ClusterDescription& description)
 
 void FrameIntake::describe(const ClusterDescription& description)
 {
-    if (description.unit != unit_ || description.kind != static_cast<std::uint8_t>(kind_)) return;
+    if (description.unit != unit_ || description.kind != octet(kind_)) return;
     if (const char* why = problem_of(description)) {
         ++counters_.rejected_frames;
         complain({.fault = Fault::description, .identity = {description.epoch, 0}, .why = why});
@@ -62,7 +63,7 @@ void FrameIntake::describe(const ClusterDescription& description)
 
 bool FrameIntake::offer(const SensorFrame& frame, std::int64_t now_ns)
 {
-    if (frame.unit != unit_ || frame.kind != static_cast<std::uint8_t>(kind_)) return false;
+    if (frame.unit != unit_ || frame.kind != octet(kind_)) return false;
     if (!order(frame, now_ns)) return true;
     if (waiting_count_ == waiting_capacity) {
         waiting_begin_ = (waiting_begin_ + 1) % waiting_capacity;

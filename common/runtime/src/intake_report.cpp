@@ -1,5 +1,7 @@
 #include "quorient/runtime/intake_report.hpp"
 
+#include "quorient/messages/meaning.hpp"
+
 #include <fmt/format.h>
 
 namespace quorient::runtime {

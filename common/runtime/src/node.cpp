@@ -1,8 +1,9 @@
+#include "quorient/messages/meaning.hpp"
+#include "quorient/messages/name.hpp"
 #include "quorient/runtime/node.hpp"
 
 #include "quorient/bus/topics.hpp"
 #include "quorient/runtime/options.hpp"
-#include "quorient/runtime/text.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -45,9 +46,9 @@ Node::Node(NodeSettings settings, bus::Bus& bus, EventLoop& loop)
     status_.unit = settings_.unit;
     status_.service = settings_.service;
     status_.process = static_cast<std::uint32_t>(::getpid());
-    status_.role = static_cast<std::uint8_t>(settings_.role);
-    status_.state = static_cast<std::uint8_t>(ServiceState::starting);
-    status_.vendor = static_cast<std::uint8_t>(bus.vendor());
+    status_.role = octet(settings_.role);
+    status_.state = octet(ServiceState::starting);
+    status_.vendor = octet(bus.vendor());
     copy_text(settings_.name, status_.name);
     copy_text(version(), status_.version);
     if (settings_.heartbeat) {
@@ -82,8 +83,8 @@ void Node::report(EventCode code, Severity severity, Identity identity, std::uin
     event.unit = settings_.unit;
     event.source = settings_.service;
     event.axes = axes;
-    event.code = static_cast<std::uint8_t>(code);
-    event.severity = static_cast<std::uint8_t>(severity);
+    event.code = octet(code);
+    event.severity = octet(severity);
     copy_text(settings_.name, event.source_name);
     copy_text(text, event.text);
     events_.publish(event);
@@ -92,7 +93,7 @@ void Node::report(EventCode code, Severity severity, Identity identity, std::uin
 
 bool Node::report_throttled(EventCode code, Severity severity, Identity identity, std::uint32_t axes, std::string_view text)
 {
-    auto& last = last_told_ns_[static_cast<std::uint8_t>(code)];
+    auto& last = last_told_ns_[octet(code)];
     const auto now = clock().steady_ns();
     if (last != 0 && now - last < second_ns) return false;
     last = now;
@@ -119,7 +120,7 @@ bool Node::is_new(std::uint64_t request)
 void Node::set_state(ServiceState state)
 {
     if (this->state() == state) return;
-    status_.state = static_cast<std::uint8_t>(state);
+    status_.state = octet(state);
     if (service_manager_ && (state == ServiceState::ready || state == ServiceState::running)) service_manager_->ready();
     if (service_manager_ && state == ServiceState::stopping) service_manager_->stopping();
     publish_status();
@@ -190,7 +191,7 @@ void Node::publish_status()
     if (main_output_) {
         const auto output = main_output_();
         status_.matched = output.matched;
-        status_.transport = static_cast<std::uint8_t>(output.transport);
+        status_.transport = octet(output.transport);
     }
     const auto count = std::min(latency_count_, latency_ns_.size());
     if (count > 0) {

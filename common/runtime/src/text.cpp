@@ -1,6 +1,6 @@
 #include "quorient/runtime/text.hpp"
 
-#include <fmt/format.h>
+#include <algorithm>
 #include <numeric>
 
 namespace quorient::runtime {
@@ -31,18 +31,6 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
         std::min_element(words.begin(), words.end(), [&](const auto& a, const auto& b) { return edits(word, a) < edits(word, b); });
     if (nearest == words.end() || edits(word, *nearest) > 1 + word.size() / 3) return {};
     return *nearest;
-}
-
-std::string describe_axes(std::uint32_t mask)
-{
-    std::string list;
-    int count = 0;
-    for (unsigned axis = 0; axis < 32; ++axis) {
-        if ((mask >> axis & 1U) == 0) continue;
-        list += fmt::format("{}{} (G{})", count++ ? ", " : "", axis, axis + 1);
-    }
-    if (count == 0) return "no axis";
-    return (count == 1 ? "axis " : "axes ") + list;
 }
 
 }  // namespace quorient::runtime

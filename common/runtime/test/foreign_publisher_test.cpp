@@ -1,5 +1,6 @@
 // What a publisher that is not ours may do wrong is named, once, in words that tell its author what to change.
 
+#include "quorient/messages/meaning.hpp"
 #include "quorient/runtime/intake_report.hpp"
 
 #include <gmock/gmock.h>
@@ -22,7 +23,7 @@ ClusterDescription description(std::uint64_t epoch, std::uint32_t revision = 1)
     described.epoch = epoch;
     described.revision = revision;
     described.unit = unit;
-    described.kind = static_cast<std::uint8_t>(SensorKind::gyro);
+    described.kind = octet(SensorKind::gyro);
     described.axis_count = 4;
     described.interval_s = 0.005;
     return described;
@@ -39,7 +40,7 @@ protected:
         made.sample_time_ns = static_cast<std::int64_t>(sequence + 1) * interval_ns;
         made.interval_s = 0.005;
         made.unit = unit;
-        made.kind = static_cast<std::uint8_t>(SensorKind::gyro);
+        made.kind = octet(SensorKind::gyro);
         made.axis_count = 4;
         made.valid_mask = all_axes(4);
         made.description_revision = 1;

@@ -1,3 +1,4 @@
+#include "quorient/messages/meaning.hpp"
 #include "quorient/runtime/frame_intake.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@ ClusterDescription description(std::uint64_t epoch)
     described.epoch = epoch;
     described.revision = 1;
     described.unit = unit;
-    described.kind = static_cast<std::uint8_t>(SensorKind::gyro);
+    described.kind = octet(SensorKind::gyro);
     described.axis_count = 4;
     described.interval_s = 0.005;
     described.range.fill(10);
@@ -32,7 +33,7 @@ SensorFrame frame(std::uint64_t epoch, std::uint64_t sequence)
     made.sample_time_ns = static_cast<std::int64_t>(sequence + 1) * interval_ns;
     made.interval_s = 0.005;
     made.unit = unit;
-    made.kind = static_cast<std::uint8_t>(SensorKind::gyro);
+    made.kind = octet(SensorKind::gyro);
     made.axis_count = 4;
     made.valid_mask = all_axes(4);
     made.description_revision = 1;
@@ -70,7 +71,7 @@ TEST_F(Intake, takes_two_channels_of_a_vessel_and_refuses_two_axes_in_space)
     ClusterDescription two = description(1);
     two.axis_count = 2;
     EXPECT_NE(FrameIntake::problem_of(two), nullptr);
-    two.kind = static_cast<std::uint8_t>(SensorKind::vessel_rates);
+    two.kind = octet(SensorKind::vessel_rates);
     EXPECT_EQ(FrameIntake::problem_of(two), nullptr);
     two.axis_count = 0;
     EXPECT_NE(FrameIntake::problem_of(two), nullptr);
@@ -93,7 +94,7 @@ TEST_F(Intake, ignores_another_unit_and_another_kind)
     other.unit = unit + 1;
     EXPECT_FALSE(intake.offer(other, 0));
     other = frame(1, 0);
-    other.kind = static_cast<std::uint8_t>(SensorKind::accelerometer);
+    other.kind = octet(SensorKind::accelerometer);
     EXPECT_FALSE(intake.offer(other, 0));
     EXPECT_EQ(intake.counters().foreign, 0U);
 }

@@ -1,3 +1,4 @@
+#include "quorient/messages/meaning.hpp"
 #include "quorient/simulation/faults.hpp"
 
 #include <fmt/format.h>
@@ -204,9 +205,9 @@ std::string to_string(const FaultSpec& fault)
 FaultCommand to_command(const FaultSpec& fault)
 {
     FaultCommand command;
-    command.action = static_cast<std::uint8_t>(CommandAction::inject);
+    command.action = octet(CommandAction::inject);
     command.axes = fault.axes;
-    command.kind = static_cast<std::uint8_t>(fault.kind);
+    command.kind = octet(fault.kind);
     command.value = fault.value;
     command.start_s = fault.start_s;
     command.end_s = fault.end_s;
@@ -219,7 +220,7 @@ FaultSpec from_command(const FaultCommand& command, double now_s)
 {
     FaultSpec fault;
     fault.axes = command.axes;
-    fault.kind = static_cast<FaultKind>(command.kind);
+    fault.kind = fault_of(command);
     fault.value = command.value;
     fault.start_s = now_s + command.start_s;
     fault.end_s = now_s + command.end_s;

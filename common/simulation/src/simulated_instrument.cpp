@@ -1,3 +1,4 @@
+#include "quorient/messages/meaning.hpp"
 #include "quorient/simulation/simulated_instrument.hpp"
 
 #include "counter_noise.hpp"
@@ -90,7 +91,7 @@ void SimulatedInstrument::advance_to(std::uint64_t sequence, SensorFrame& frame,
     frame.epoch = epoch_;
     frame.interval_s = scenario_.interval_s;
     frame.unit = unit_;
-    frame.kind = static_cast<std::uint8_t>(kind_);
+    frame.kind = octet(kind_);
     frame.axis_count = static_cast<std::uint8_t>(cluster_.size());
     while (next_ <= sequence) produce(next_++, frame);
 

@@ -1,5 +1,7 @@
 #include "quorient/simulation/vessel.hpp"
 
+#include "quorient/messages/meaning.hpp"
+
 #include "counter_noise.hpp"
 
 #include <fmt/format.h>
@@ -122,7 +124,7 @@ bool SimulatedVessel::next(SensorFrame& frame, Eigen::VectorXd& state)
     frame.sequence = sequence_;
     frame.sample_time_ns = std::llround(time * 1e9);
     frame.interval_s = scenario_.interval_s;
-    frame.kind = static_cast<std::uint8_t>(SensorKind::vessel_rates);
+    frame.kind = octet(SensorKind::vessel_rates);
     frame.axis_count = static_cast<std::uint8_t>(channels);
     frame.valid_mask = all_axes(static_cast<std::size_t>(channels));
     for (Eigen::Index channel = 0; channel < channels; ++channel) {

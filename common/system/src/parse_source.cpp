@@ -4,7 +4,6 @@
 #include "parse_vessel.hpp"
 #include "quorient/attitude/levelling.hpp"
 #include "quorient/geometry/layouts.hpp"
-#include "quorient/runtime/text.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -2,22 +2,11 @@
 
 #include "quorient/messages/sample_time.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 namespace quorient::voting {
 namespace {
-
-Eigen::Quaterniond eigen(const Quaternion& q)
-{
-    return {q[0], q[1], q[2], q[3]};
-}
-
-Quaternion wire(const Eigen::Quaterniond& q)
-{
-    return {q.w(), q.x(), q.y(), q.z()};
-}
 
 bool finite(const auto& values)
 {
@@ -25,27 +14,6 @@ bool finite(const auto& values)
 }
 
 }  // namespace
-
-Quaternion product(const Quaternion& left, const Quaternion& right)
-{
-    return wire(eigen(left) * eigen(right));
-}
-
-Quaternion conjugate(const Quaternion& q)
-{
-    return {q[0], -q[1], -q[2], -q[3]};
-}
-
-double geodesic_angle(const Quaternion& a, const Quaternion& b)
-{
-    const Eigen::Quaterniond difference = eigen(a).conjugate() * eigen(b);
-    return 2 * std::atan2(difference.vec().norm(), std::abs(difference.w()));
-}
-
-bool is_attitude(const Quaternion& q)
-{
-    return finite(q) && std::abs(eigen(q).norm() - 1) < 1e-6;
-}
 
 bool is_sound(const AttitudeState& sample)
 {
@@ -57,7 +25,7 @@ bool Agreement::agree(std::size_t a, const AttitudeState& of_a, std::size_t b, c
 {
     const double sigma = std::hypot(std::min(of_a.angle_sigma_rad, sigma_limit), std::min(of_b.angle_sigma_rad, sigma_limit));
     const double gate_rad = agreement_rad_ + agreement_sigmas_ * sigma;
-    return geodesic_angle(of_a.attitude, of_b.attitude) <= (apart_.test(pair(a, b)) ? gate_rad / 2 : gate_rad);
+    return angle_between(of_a.attitude, of_b.attitude) <= (apart_.test(pair(a, b)) ? gate_rad / 2 : gate_rad);
 }
 
 void Agreement::remember(std::size_t a, const AttitudeState& of_a, std::size_t b, const AttitudeState& of_b, double sigma_limit)

@@ -1,6 +1,7 @@
 #include "quorient/voting/ballot.hpp"
 
 #include "quorient/messages/codes.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -144,7 +145,7 @@ private:
         for (LaneIndex a = 0; a < paper_.lanes; ++a) {
             for (LaneIndex b = a + 1; b < paper_.lanes; ++b) {
                 if (!has_lane(lanes, a) || !has_lane(lanes, b)) continue;
-                largest = std::max(largest, geodesic_angle(paper_.sample[a]->attitude, paper_.sample[b]->attitude));
+                largest = std::max(largest, angle_between(paper_.sample[a]->attitude, paper_.sample[b]->attitude));
             }
         }
         return largest;
@@ -163,7 +164,7 @@ private:
 bool is_countable(const AttitudeState& sample)
 {
     if (sample.used_mask == 0) return false;
-    switch (static_cast<AttitudeMode>(sample.mode)) {
+    switch (mode_of(sample)) {
         case AttitudeMode::normal:
         case AttitudeMode::ambiguous:
         case AttitudeMode::untrusted:
@@ -176,7 +177,7 @@ bool is_countable(const AttitudeState& sample)
 
 int distrust(const AttitudeState& sample)
 {
-    switch (static_cast<AttitudeMode>(sample.mode)) {
+    switch (mode_of(sample)) {
         case AttitudeMode::untrusted:
             return 1;
         case AttitudeMode::lost:

@@ -1,6 +1,7 @@
 #include "brain.hpp"
 
-#include "quorient/voting/nanoseconds.hpp"
+#include "quorient/messages/meaning.hpp"
+#include "quorient/messages/time.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -119,7 +120,7 @@ void Voter::Brain::adopt(const VotedAttitude& output)
     timeline_.pass(identity_of(output));
     if (const auto lane = lane_of(output.unit, output.primary_lane, &LaneSettings::lane)) primary_ = *lane;
     last_ = output;
-    const bool lost = output.mode == static_cast<std::uint8_t>(AttitudeMode::lost);
+    const bool lost = mode_of(output) == AttitudeMode::lost;
     last_frame_ns_ = lost ? *now_ - silence_ns_ - coasting_to_lost_ns_ : *now_;
 }
 

@@ -2,7 +2,8 @@
 
 #include "brain.hpp"
 
-#include "quorient/voting/nanoseconds.hpp"
+#include "quorient/messages/meaning.hpp"
+#include "quorient/messages/time.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -122,11 +123,11 @@ void Voter::Brain::publish(std::uint64_t sequence, const Ballot& ballot)
     const bool on_votes = ballot.backed || is_complete(identity, ballot.several_groups);
     const Continuity::Reset reset = continue_stream(identity, sample);
     if (*ballot.primary != primary_ && !is_stand_in(identity, *ballot.primary))
-        change_primary(identity, *ballot.primary, reset.moved ? geodesic_angle(reset.rotation, no_rotation) : 0);
+        change_primary(identity, *ballot.primary, reset.moved ? angle_between(reset.rotation, no_rotation) : 0);
     board_.publish(identity, ballot, board_.unseeded_remain(), *now_);
     timeline_.publish(sequence, on_votes, *now_);
 
-    const bool lost = sample.mode == static_cast<std::uint8_t>(AttitudeMode::lost);
+    const bool lost = mode_of(sample) == AttitudeMode::lost;
     const bool redundancy_left = !corroboration_.redundancy_exhausted(primary_);
     set_level(identity, lost ? VoteLevel::lost : board_.levels().level(board_.excluded(), redundancy_left));
 
@@ -205,7 +206,7 @@ void Voter::Brain::fill(VotedAttitude& output, const AttitudeState& sample, cons
     output.suspect_mask = sample.suspect_mask;
     for (LaneIndex lane = 0; lane < board_.size(); ++lane) output.excluded_why[lane] = static_cast<std::uint8_t>(board_.lane(lane).why());
     output.mode = sample.mode;
-    output.level = static_cast<std::uint8_t>(level_);
+    output.level = octet(level_);
     output.seeded = sample.seeded;
     output.bridged = sample.bridged;
 }
@@ -226,7 +227,7 @@ void Voter::Brain::coast_if_due()
     output.voter = settings_.voter;
     output.output_sequence = ranking_.next_output_sequence(identity_of(last_));
     output.mode = static_cast<std::uint8_t>(lost ? AttitudeMode::lost : AttitudeMode::coasting);
-    output.level = static_cast<std::uint8_t>(level_);
+    output.level = octet(level_);
     output.vouching_mask = 0;
     output.spread_rad = 0;
     emit(output, true);

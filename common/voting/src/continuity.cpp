@@ -23,7 +23,7 @@ Quaternion turned(const Quaternion& attitude, const std::array<double, 3>& rate_
 
 bool Continuity::is_same(const Quaternion& a, const Quaternion& b)
 {
-    return geodesic_angle(a, b) <= rounding_rad;
+    return angle_between(a, b) <= rounding_rad;
 }
 
 void Continuity::follow(const VotedAttitude& output)

@@ -1,6 +1,7 @@
 #include "quorient/voting/corroboration.hpp"
 
 #include "quorient/messages/codes.hpp"
+#include "quorient/messages/meaning.hpp"
 #include "quorient/voting/timeline.hpp"
 
 #include <algorithm>
@@ -18,13 +19,13 @@ AxisMask candidates(const FaultVerdict& verdict)
 
 bool sees_trouble(const FaultVerdict& verdict)
 {
-    const auto state = static_cast<VerdictState>(verdict.state);
+    const auto state = state_of(verdict);
     return state == VerdictState::suspect || state == VerdictState::ambiguous;
 }
 
 bool is_tested(const FaultVerdict& verdict)
 {
-    return verdict.state >= static_cast<std::uint8_t>(VerdictState::healthy);
+    return state_of(verdict) != VerdictState::unknown && state_of(verdict) != VerdictState::warming_up;
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include "joining.hpp"
 
-#include "quorient/voting/nanoseconds.hpp"
+#include "quorient/messages/time.hpp"
 
 #include <utility>
 

@@ -1,5 +1,7 @@
 #include "narrator.hpp"
 
+#include "quorient/messages/words.hpp"
+
 #include <bit>
 #include <cinttypes>
 #include <cstdarg>
@@ -44,25 +46,6 @@ const char* words(LaneExclusion why)
     return "";
 }
 
-const char* words(VoteLevel level)
-{
-    switch (level) {
-        case VoteLevel::full:
-            return "FULL";
-        case VoteLevel::degraded:
-            return "DEGRADED";
-        case VoteLevel::single:
-            return "SINGLE";
-        case VoteLevel::coasting:
-            return "COASTING";
-        case VoteLevel::lost:
-            return "LOST";
-        case VoteLevel::unknown:
-            break;
-    }
-    return "UNKNOWN";
-}
-
 }  // namespace
 
 void Narrator::primary_changed(Identity identity, LaneIndex from, LaneIndex to, const char* reason, double moved_rad,
@@ -99,7 +82,7 @@ void Narrator::level(Identity identity, VoteLevel before, VoteLevel now, LaneMas
                            : now == VoteLevel::lost   ? EventCode::lost
                                                       : EventCode::level_changed;
     VoterEvent& event = add(code, severity, identity);
-    write(event.text, "level %s -> %s: %d of %zu lanes stand behind the output", words(before), words(now), std::popcount(standing),
+    write(event.text, "level %s -> %s: %d of %zu lanes stand behind the output", to_string(before).data(), to_string(now).data(), std::popcount(standing),
           lanes_.size());
 }
 

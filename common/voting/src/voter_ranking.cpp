@@ -1,8 +1,9 @@
 #include "quorient/voting/voter_ranking.hpp"
 
 #include "quorient/messages/codes.hpp"
+#include "quorient/messages/meaning.hpp"
 #include "quorient/voting/agreement.hpp"
-#include "quorient/voting/nanoseconds.hpp"
+#include "quorient/messages/time.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -15,7 +16,7 @@ constexpr unsigned longest_lag_frames = 400;
 
 bool is_repeated(const VotedAttitude& output)
 {
-    return output.mode == static_cast<std::uint8_t>(AttitudeMode::coasting) || output.mode == static_cast<std::uint8_t>(AttitudeMode::lost);
+    return mode_of(output) == AttitudeMode::coasting || mode_of(output) == AttitudeMode::lost;
 }
 
 Position position_of(const VotedAttitude& output)

@@ -1,5 +1,6 @@
 // What lanes and detectors say of a sensor fault, and what the voter makes of it.
 #include "scene.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <gtest/gtest.h>
 
@@ -132,7 +133,7 @@ TEST(Isolation, that_came_first_and_rightly_is_never_expelled_by_two_late_ones)
             fault.drift_rad = 1e-4;
             fault.play(scene, 0, late + 99);
             for (const Output& output : scene.outputs) {
-                EXPECT_NE(output.attitude.excluded_why[first], static_cast<std::uint8_t>(LaneExclusion::disagrees))
+                EXPECT_NE(output.attitude.excluded_why[first], octet(LaneExclusion::disagrees))
                     << "late by " << late - 52;
                 if (output.attitude.sequence < late - 2) continue;
                 EXPECT_EQ(output.attitude.attitude, truth(output.attitude.sequence)) << "from the frame on that a second detector suspects";
@@ -210,7 +211,7 @@ TEST(Isolation, of_a_majority_that_is_late_is_waited_for_in_place_of_the_lane_th
     }
     for (const Output& output : scene.outputs) {
         if (output.attitude.sequence < 52) continue;
-        EXPECT_LT(geodesic_angle(output.attitude.attitude, truth(output.attitude.sequence)), 1e-9) << "frame " << output.attitude.sequence;
+        EXPECT_LT(angle_between(output.attitude.attitude, truth(output.attitude.sequence)), 1e-9) << "frame " << output.attitude.sequence;
     }
     EXPECT_GE(scene.last().sequence, 197U);
 }
@@ -241,7 +242,7 @@ TEST(Isolation, that_verdicts_tell_before_the_frames_arrive_leaves_no_frame_out)
         for (const Output& output : scene.outputs) {
             const std::uint64_t sequence = output.attitude.sequence;
             const double allowed_rad = sequence < 50 || sequence >= applied ? 0 : made.drift_rad * static_cast<double>(sequence - 49);
-            EXPECT_LE(geodesic_angle(output.attitude.attitude, truth(sequence)), allowed_rad + 1e-9) << "frame " << sequence;
+            EXPECT_LE(angle_between(output.attitude.attitude, truth(sequence)), allowed_rad + 1e-9) << "frame " << sequence;
         }
     }
 }
@@ -268,7 +269,7 @@ TEST(Isolation, by_candidates_of_another_detector_counts)
                 FaultVerdict verdict =
                     verdict_of(lane, sequence, fault && lane == 2 ? VerdictState::isolated : VerdictState::healthy, axis_2);
                 if (fault && lane == 1) {
-                    verdict.state = static_cast<std::uint8_t>(VerdictState::ambiguous);
+                    verdict.state = octet(VerdictState::ambiguous);
                     verdict.candidate_set[0] = 0b001;
                     verdict.candidate_set[1] = named ? axis_2 : 0b010;
                     verdict.candidate_count = 2;

@@ -115,7 +115,7 @@ TEST(Continuity, tells_the_rotation_between_two_lanes_from_the_frame_that_both_k
     const auto reset = continuity.next(moved(sample_of(1, 10), 0.02), &before);
     EXPECT_TRUE(reset.moved);
     EXPECT_EQ(reset.counter, 5U);
-    EXPECT_NEAR(geodesic_angle(product(reset.rotation, truth(10)), moved(sample_of(1, 10), 0.02).attitude), 0, 1e-12);
+    EXPECT_NEAR(angle_between(product(reset.rotation, truth(10)), moved(sample_of(1, 10), 0.02).attitude), 0, 1e-12);
 
     const AttitudeState same = sample_of(1, 9);
     EXPECT_FALSE(continuity.next(sample_of(1, 10), &same).moved) << "a lane at the same place moves nothing";
@@ -136,7 +136,7 @@ TEST(Continuity, passes_on_what_the_lane_itself_announces)
     corrected.reset_rotation = turn(-0.03);
     const auto reset = continuity.next(corrected, &before);
     EXPECT_TRUE(reset.moved);
-    EXPECT_NEAR(geodesic_angle(reset.rotation, turn(-0.03)), 0, 1e-12);
+    EXPECT_NEAR(angle_between(reset.rotation, turn(-0.03)), 0, 1e-12);
 }
 
 TEST(Continuity, estimates_the_rotation_where_no_frame_is_known_to_both)
@@ -150,5 +150,5 @@ TEST(Continuity, estimates_the_rotation_where_no_frame_is_known_to_both)
     Continuity continuity;
     continuity.follow(output);
     const auto reset = continuity.next(moved(sample_of(2, 12), 0.02), nullptr);
-    EXPECT_NEAR(geodesic_angle(reset.rotation, turn(0.02)), 0, 1e-9);
+    EXPECT_NEAR(angle_between(reset.rotation, turn(0.02)), 0, 1e-9);
 }

@@ -3,6 +3,7 @@
 //
 // QUORIENT_RANDOM_SEQUENCES sets how many sequences are tried in all (default 5000), QUORIENT_RANDOM_SEED the first seed.
 #include "scene.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <gtest/gtest.h>
 #include <algorithm>
@@ -338,7 +339,7 @@ private:
         sample.seeded = lane.seeded;
         sample.reset_counter = lane.resets;
         sample.reset_rotation = lane.reset;
-        if (lane.initialising > 0) sample.mode = static_cast<std::uint8_t>(AttitudeMode::initialising);
+        if (lane.initialising > 0) sample.mode = octet(AttitudeMode::initialising);
         return sample;
     }
 
@@ -635,7 +636,7 @@ TEST(RandomEvents, let_one_lying_lane_of_three_move_nothing_by_more_than_the_agr
                 world.watch().expect(now.vouching_mask != 0, "it coasts although two lanes are there");
                 world.watch().expect(now.sequence == expected, "a frame is missing");
                 world.watch().expect(now.epoch == first_epoch, "it followed a liar into another epoch");
-                world.watch().expect(geodesic_angle(now.attitude, truth(now.sequence)) <= gate_rad, "it followed a liar");
+                world.watch().expect(angle_between(now.attitude, truth(now.sequence)) <= gate_rad, "it followed a liar");
                 expected = now.sequence + 1;
             };
             for (const Event& event : events) {
@@ -665,7 +666,7 @@ TEST(RandomEvents, never_expel_the_lane_that_isolated_first_and_rightly)
                 const auto why = static_cast<LaneExclusion>(now.excluded_why[first]);
                 world.watch().expect(why == LaneExclusion::none || why == LaneExclusion::uncorroborated, "the first one is expelled");
                 world.watch().expect(
-                    now.sequence <= spread_at || now.sequence < fault_at || geodesic_angle(now.attitude, truth(now.sequence)) < 1e-6,
+                    now.sequence <= spread_at || now.sequence < fault_at || angle_between(now.attitude, truth(now.sequence)) < 1e-6,
                     "the output is wrong although two detectors know better");
                 world.watch().expect(now.vouching_mask != 0, "it coasts");
             };
@@ -711,7 +712,7 @@ TEST(RandomEvents, are_always_recovered_from_when_the_cause_ends)
             if (!world.watch().last()) return world.problem();
             const VotedAttitude& last = *world.watch().last();
             world.watch().expect(identity_of(last) == world.newest(), "the output has stopped");
-            world.watch().expect(last.level == static_cast<std::uint8_t>(VoteLevel::full), "not FULL again");
+            level_of(world.watch().expect(last) == VoteLevel::full, "not FULL again");
             world.watch().expect(last.excluded_mask == 0, "a lane is still excluded");
             return world.problem();
         });

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "quorient/messages/codes.hpp"
+#include "quorient/messages/exclusions.hpp"
+#include "quorient/messages/meaning.hpp"
 #include "quorient/voting/agreement.hpp"
 #include "quorient/voting/voter.hpp"
 
@@ -52,11 +54,11 @@ inline AttitudeState sample_of(std::size_t lane, std::uint64_t sequence, std::ui
     sample.attitude = truth(sequence);
     sample.rate_rad_s = {0.7, 0, 0};
     sample.angle_sigma_rad = 1e-5;
-    sample.excluded_from = detail::all_never();
+    sample.excluded_from = Exclusions{};
     sample.unit = 7;
     sample.lane = static_cast<std::uint32_t>(lane) + 1;
     sample.used_mask = 0x3f;
-    sample.mode = static_cast<std::uint8_t>(AttitudeMode::normal);
+    sample.mode = octet(AttitudeMode::normal);
     return sample;
 }
 
@@ -81,7 +83,7 @@ inline FaultVerdict verdict_of(std::size_t lane, std::uint64_t sequence, Verdict
     verdict.sequence = sequence;
     verdict.unit = 7;
     verdict.detector = static_cast<std::uint32_t>(lane) + 101;
-    verdict.state = static_cast<std::uint8_t>(state);
+    verdict.state = octet(state);
     verdict.detectable_remaining = 2;
     if (state == VerdictState::suspect) verdict.suspect_mask = axes;
     if (state == VerdictState::isolated) verdict.isolated_mask = axes;
@@ -181,7 +183,7 @@ public:
 
     bool excluded(std::size_t lane) const { return (last().excluded_mask >> lane & 1U) != 0; }
     LaneExclusion why(std::size_t lane) const { return static_cast<LaneExclusion>(last().excluded_why[lane]); }
-    double error_rad() const { return geodesic_angle(last().attitude, truth(last().sequence)); }
+    double error_rad() const { return angle_between(last().attitude, truth(last().sequence)); }
 
     std::size_t lanes;
     Voter voter;

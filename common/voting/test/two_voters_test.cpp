@@ -188,7 +188,7 @@ TEST(TwoVoters, announce_the_move_when_the_heir_stands_elsewhere)
     const VotedAttitude* next = output_of(pair.weak, 80);
     ASSERT_NE(next, nullptr);
     EXPECT_EQ(next->reset_counter, last.reset_counter + 1);
-    EXPECT_NEAR(geodesic_angle(product(next->reset_rotation, truth(80)), next->attitude), 0, 1e-12);
+    EXPECT_NEAR(angle_between(product(next->reset_rotation, truth(80)), next->attitude), 0, 1e-12);
     EXPECT_EQ(pair.weak.last().reset_counter, last.reset_counter + 1) << "once";
 }
 

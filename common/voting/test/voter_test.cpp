@@ -1,5 +1,6 @@
 #include "allocation_count.hpp"
 #include "scene.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <gtest/gtest.h>
 #include <limits>
@@ -24,7 +25,7 @@ void expect_every_frame_once(const Scene& scene, std::uint64_t first, std::uint6
 {
     std::uint64_t expected = first;
     for (const Output& output : scene.outputs) {
-        if (output.attitude.mode == static_cast<std::uint8_t>(AttitudeMode::coasting)) continue;
+        if (mode_of(output.attitude) == AttitudeMode::coasting) continue;
         EXPECT_EQ(output.attitude.sequence, expected);
         expected = output.attitude.sequence + 1;
     }
@@ -246,7 +247,7 @@ TEST(Voter, counts_no_lane_that_is_initialising_or_fuses_nothing)
         Scene scene;
         scene.frames(0, 99, [&](std::size_t lane, AttitudeState& sample) {
             if (lane != 2) return lane == 0;
-            if (initialising) sample.mode = static_cast<std::uint8_t>(AttitudeMode::initialising);
+            if (initialising) sample.mode = octet(AttitudeMode::initialising);
             else sample.used_mask = 0;
             return true;
         });
@@ -261,7 +262,7 @@ TEST(Voter, never_moves_to_a_lane_that_is_initialising)
     Scene scene;
     scene.frames(0, 49);
     scene.frames(50, 99, [](std::size_t lane, AttitudeState& sample) {
-        if (lane == 1) sample.mode = static_cast<std::uint8_t>(AttitudeMode::initialising);
+        if (lane == 1) sample.mode = octet(AttitudeMode::initialising);
         return lane != 0;
     });
     EXPECT_EQ(scene.last().primary_lane, 3U);
@@ -272,24 +273,24 @@ TEST(Voter, prefers_a_lane_whose_detector_is_not_blind)
     Scene scene;
     scene.frames(0, 49);
     scene.frames(50, 69, [](std::size_t lane, AttitudeState& sample) {
-        if (lane == 0) sample.mode = static_cast<std::uint8_t>(AttitudeMode::untrusted);
+        if (lane == 0) sample.mode = octet(AttitudeMode::untrusted);
         return true;
     });
     EXPECT_EQ(scene.last().primary_lane, 2U);
     EXPECT_EQ(scene.why(0), LaneExclusion::untrusted);
     scene.frames(70, 99, [](std::size_t, AttitudeState& sample) {
-        sample.mode = static_cast<std::uint8_t>(AttitudeMode::untrusted);
+        sample.mode = octet(AttitudeMode::untrusted);
         return true;
     });
     EXPECT_EQ(scene.last().sequence, 99U) << "with everybody blind the output goes on and says so";
-    EXPECT_EQ(scene.last().mode, static_cast<std::uint8_t>(AttitudeMode::untrusted));
+    EXPECT_EQ(scene.last().mode, octet(AttitudeMode::untrusted));
 }
 
 TEST(Voter, says_lost_while_its_lanes_are_lost)
 {
     Scene scene;
     scene.frames(0, 49, [](std::size_t, AttitudeState& sample) {
-        sample.mode = static_cast<std::uint8_t>(AttitudeMode::lost);
+        sample.mode = octet(AttitudeMode::lost);
         return true;
     });
     EXPECT_EQ(scene.voter.level(), VoteLevel::lost);
@@ -388,7 +389,7 @@ TEST(Voter, announces_a_change_of_primary_that_moves_the_attitude_as_a_reset)
     scene.frames(0, 99, shifted);
     EXPECT_EQ(scene.last().primary_lane, 2U);
     EXPECT_EQ(scene.last().reset_counter, 1U);
-    EXPECT_NEAR(geodesic_angle(product(scene.last().reset_rotation, truth(99)), scene.last().attitude), 0, 1e-12);
+    EXPECT_NEAR(angle_between(product(scene.last().reset_rotation, truth(99)), scene.last().attitude), 0, 1e-12);
 }
 
 TEST(Voter, announces_no_reset_when_nothing_moves)
@@ -412,7 +413,7 @@ TEST(Voter, passes_on_the_primarys_own_reset)
         return true;
     });
     EXPECT_EQ(scene.last().reset_counter, 1U);
-    EXPECT_NEAR(geodesic_angle(scene.last().reset_rotation, turn(-0.02)), 0, 1e-12);
+    EXPECT_NEAR(angle_between(scene.last().reset_rotation, turn(-0.02)), 0, 1e-12);
 }
 
 TEST(Voter, follows_the_lanes_into_a_new_epoch)

@@ -1,6 +1,6 @@
 // A consumer of the installed package: isolates a biased gyro of the dodecahedron and prints its axis.
 
-#include <quorient/attitude/quaternion.hpp>
+#include <quorient/rotation/quaternion.hpp>
 #include <quorient/fdi/make_detector.hpp>
 #include <quorient/geometry/layouts.hpp>
 #include <quorient/recording/reader.hpp>
@@ -21,7 +21,7 @@ int main()
     if (!detector) return 2;
 
     const auto& axes = cluster->axes;
-    const auto turn = attitude::from_rotation_vector({0.01, -0.02, 0.03});
+    const auto turn = rotation::from_rotation_vector({0.01, -0.02, 0.03});
     std::vector<double> increment;
     for (Eigen::Index i = 0; i < axes.rows(); ++i) increment.push_back(2 * axes.row(i).dot(turn.vec()) + (i == 2 ? 5e-4 : 0));
     fdi::Assessment assessment;

@@ -3,6 +3,7 @@
 #include "../../test/rig.hpp"
 #include "attitude_integrator.hpp"
 #include "parity_fdi.hpp"
+#include "quorient/messages/meaning.hpp"
 #include "quorient/voting/agreement.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +16,7 @@ constexpr double bridged_rad = 1e-5;  // rounding, and the coning in a few lost 
 
 class FaultInGap : public testing::Test {
 protected:
-    double error_rad() const { return voting::geodesic_angle(rig.attitude().attitude, rig.truth().attitude); }
+    double error_rad() const { return rotation::angle_between(rig.attitude().attitude, rig.truth().attitude); }
 
     test::Rig rig;
     test::Rig::Process<detector::ParityFdi> detector{rig, rig.system.lanes.front().detector};
@@ -38,7 +39,7 @@ TEST_F(FaultInGap, is_not_suspected_where_there_is_none)
     rig.lose(12);
     for (int frame = 0; frame < 50; ++frame) {
         rig.frames(1, detector, integrator);
-        ASSERT_EQ(rig.verdict().state, static_cast<std::uint8_t>(VerdictState::healthy));
+        ASSERT_EQ(rig.verdict().state, octet(VerdictState::healthy));
     }
     EXPECT_LT(error_rad(), bridged_rad);
 }

@@ -2,6 +2,8 @@
 
 #include "../../test/rig.hpp"
 #include "attitude_integrator.hpp"
+#include "quorient/messages/meaning.hpp"
+#include "quorient/messages/name.hpp"
 
 #include <gmock/gmock.h>
 #include <cmath>
@@ -22,7 +24,7 @@ protected:
     {
         FaultCommand command;
         command.unit = rig.system.unit;
-        command.action = static_cast<std::uint8_t>(CommandAction::reset_attitude);
+        command.action = octet(CommandAction::reset_attitude);
         command.value = static_cast<double>(sequence);
         command.attitude = attitude;
         command.request = request;
@@ -33,11 +35,11 @@ protected:
     std::vector<EventCode> answered(std::uint64_t request) const
     {
         std::vector<EventCode> codes;
-        for (const auto& event : rig.answers(request)) codes.push_back(static_cast<EventCode>(event.code));
+        for (const auto& event : rig.answers(request)) codes.push_back(code_of(event));
         return codes;
     }
 
-    std::string said(std::uint64_t request) const { return std::string{runtime::text_of(rig.answers(request).back().text)}; }
+    std::string said(std::uint64_t request) const { return std::string{text_of(rig.answers(request).back().text)}; }
 
     std::uint64_t newest() const { return rig.next_sequence() - 1; }
 

@@ -2,6 +2,7 @@
 
 #include "../../test/rig.hpp"
 #include "attitude_integrator.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <gtest/gtest.h>
 #include <cmath>
@@ -47,7 +48,7 @@ VotedAttitude vouched(const Rig& rig, std::uint64_t sequence, const Quaternion& 
     voted.attitude = attitude;
     voted.reset_rotation = {1, 0, 0, 0};
     voted.primary_lane = rig.system.lanes.front().integrator.integration.lane + 1;
-    voted.level = static_cast<std::uint8_t>(VoteLevel::degraded);
+    voted.level = octet(VoteLevel::degraded);
     voted.excluded_from.fill(never);
     return voted;
 }
@@ -60,7 +61,7 @@ protected:
         rig.frames(static_cast<unsigned>(onset));
         integrator.emplace(rig, rig.system.lanes.front().integrator);
         frames(2);
-        EXPECT_EQ(rig.attitude().mode, static_cast<std::uint8_t>(AttitudeMode::initialising));
+        EXPECT_EQ(rig.attitude().mode, octet(AttitudeMode::initialising));
     }
 
     void frames(unsigned count)
@@ -95,7 +96,7 @@ protected:
         verdict.detector = rig.system.lanes.front().integrator.detector;
         verdict.epoch = rig.truth().epoch;
         verdict.sequence = rig.truth().sequence;
-        verdict.state = static_cast<std::uint8_t>(VerdictState::isolated);
+        verdict.state = octet(VerdictState::isolated);
         verdict.isolated_mask = faulty;
         verdict.excluded_from.fill(never);
         verdict.excluded_from[1] = onset;
@@ -160,7 +161,7 @@ TEST_F(Seed, is_mended_by_nobody_who_has_the_fault_himself_or_stands_alone_or_re
 
     say(voted(error_rad));
     auto alone = voted(error_rad, faulty);
-    alone.level = static_cast<std::uint8_t>(VoteLevel::single);
+    alone.level = octet(VoteLevel::single);
     say(alone);
     auto own = voted(error_rad, faulty);
     own.primary_lane = rig.system.lanes.front().integrator.integration.lane;
@@ -181,10 +182,10 @@ TEST_F(Seed, is_not_taken_from_before_a_gap_in_which_nobody_knows_what_turned)
     frames(2);
     say(before);
     frames(2);
-    EXPECT_EQ(rig.attitude().mode, static_cast<std::uint8_t>(AttitudeMode::initialising));
+    EXPECT_EQ(rig.attitude().mode, octet(AttitudeMode::initialising));
     say(voted(0));
     frames(3);
-    EXPECT_EQ(rig.attitude().mode, static_cast<std::uint8_t>(AttitudeMode::normal));
+    EXPECT_EQ(rig.attitude().mode, octet(AttitudeMode::normal));
     EXPECT_LT(away_rad(), rounding_rad);
 }
 
@@ -262,7 +263,7 @@ TEST(SeedByChance, leads_to_the_true_attitude_or_to_none)
     unsigned known = 0;
     for (unsigned seed = 1; seed <= trials; ++seed) {
         const auto attitude = Chance(seed, truth).play();
-        if (attitude.mode == static_cast<std::uint8_t>(AttitudeMode::initialising)) continue;
+        if (mode_of(attitude) == AttitudeMode::initialising) continue;
         ++known;
         EXPECT_LT(angle_between(truth.at(attitude.sequence), attitude.attitude), bridged_rad) << "seed " << seed;
     }

@@ -3,7 +3,8 @@
 #include "../../test/rig.hpp"
 #include "parity_fdi.hpp"
 #include "quorient/fdi/four_axis_detector.hpp"
-#include "quorient/runtime/text.hpp"
+#include "quorient/messages/meaning.hpp"
+#include "quorient/messages/name.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,12 +28,12 @@ protected:
     {
         FaultCommand command;
         command.unit = rig.system.unit;
-        command.action = static_cast<std::uint8_t>(CommandAction::readmit);
+        command.action = octet(CommandAction::readmit);
         command.axes = axis_1;
         command.request = request;
         rig.publish(bus::topics::command, command);
         rig.run(detector);
-        return static_cast<EventCode>(rig.answers(request).at(0).code);
+        return code_of(rig.answers(request).at(0));
     }
 
     test::Rig rig;
@@ -43,7 +44,7 @@ TEST_F(ReadmissionOrder, of_an_axis_that_is_still_wrong_is_refused)
 {
     ASSERT_EQ(rig.verdict().isolated_mask, axis_1);
     EXPECT_EQ(order(1), EventCode::command_refused);
-    EXPECT_NE(std::string(runtime::text_of(rig.answers(1).front().text)).find("still disagrees"), std::string::npos);
+    EXPECT_NE(std::string(text_of(rig.answers(1).front().text)).find("still disagrees"), std::string::npos);
     rig.frames(100, detector);
     EXPECT_EQ(rig.verdict().isolated_mask, axis_1);
 }
@@ -57,7 +58,7 @@ TEST_F(ReadmissionOrder, of_an_axis_that_agrees_again_is_obeyed)
     EXPECT_EQ(order(2), EventCode::command_done);
     rig.frames(100, detector);
     EXPECT_EQ(rig.verdict().isolated_mask, 0U);
-    EXPECT_EQ(rig.verdict().state, static_cast<std::uint8_t>(VerdictState::healthy));
+    EXPECT_EQ(rig.verdict().state, octet(VerdictState::healthy));
 }
 
 }  // namespace

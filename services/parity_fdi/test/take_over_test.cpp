@@ -2,6 +2,7 @@
 
 #include "../../test/rig.hpp"
 #include "parity_fdi.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include <gtest/gtest.h>
 #include <optional>
@@ -23,7 +24,7 @@ protected:
     void run_until_it_judges()
     {
         do frames(1);
-        while (rig.verdict().state == static_cast<std::uint8_t>(VerdictState::warming_up));
+        while (state_of(rig.verdict()) == VerdictState::warming_up);
     }
 
     template <class State>
@@ -48,7 +49,7 @@ protected:
     void voters_stand_for(AxisMask axes, VoteLevel level, std::uint64_t from = onset)
     {
         auto voted = excluding<VotedAttitude>(axes, from);
-        voted.level = static_cast<std::uint8_t>(level);
+        voted.level = octet(level);
         rig.publish(bus::topics::voter_output, voted);
     }
 
@@ -56,7 +57,7 @@ protected:
     {
         FaultCommand command;
         command.unit = rig.system.unit;
-        command.action = static_cast<std::uint8_t>(CommandAction::readmit);
+        command.action = octet(CommandAction::readmit);
         command.axes = axis_1;
         command.request = 9;
         rig.publish(bus::topics::command, command);
@@ -153,7 +154,7 @@ TEST_F(TakeOver, does_not_bring_back_what_an_order_has_readmitted)
     frames(100);
     EXPECT_EQ(rig.verdict().isolated_mask, 0U);
     ASSERT_EQ(rig.answers(9).size(), 1U);
-    EXPECT_EQ(rig.answers(9).front().code, static_cast<std::uint8_t>(EventCode::command_done));
+    EXPECT_EQ(rig.answers(9).front().code, octet(EventCode::command_done));
 }
 
 TEST_F(TakeOver, obeys_an_order_that_comes_before_it_knows_of_any_exclusion)
@@ -161,7 +162,7 @@ TEST_F(TakeOver, obeys_an_order_that_comes_before_it_knows_of_any_exclusion)
     start();
     order_readmission();
     ASSERT_EQ(rig.answers(9).size(), 1U);
-    EXPECT_EQ(rig.answers(9).front().code, static_cast<std::uint8_t>(EventCode::command_done));
+    EXPECT_EQ(rig.answers(9).front().code, octet(EventCode::command_done));
     lane_remembers(axis_1);
     frames(100);
     EXPECT_EQ(rig.verdict().isolated_mask, 0U);
@@ -173,7 +174,7 @@ TEST_F(TakeOver, refuses_to_readmit_what_it_judges_healthy)
     run_until_it_judges();
     order_readmission();
     ASSERT_EQ(rig.answers(9).size(), 1U);
-    EXPECT_EQ(rig.answers(9).front().code, static_cast<std::uint8_t>(EventCode::command_refused));
+    EXPECT_EQ(rig.answers(9).front().code, octet(EventCode::command_refused));
 }
 
 TEST_F(TakeOver, obeys_a_repeated_order_once)

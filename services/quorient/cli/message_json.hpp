@@ -2,7 +2,7 @@
 
 #include "json_output.hpp"
 #include "quorient/messages/fields.hpp"
-#include "quorient/runtime/text.hpp"
+#include "quorient/messages/name.hpp"
 
 #include <type_traits>
 
@@ -19,7 +19,7 @@ Json value_json(const Value& value)
 template <std::size_t Size>
 Json value_json(const std::array<char, Size>& name)
 {
-    return std::string{runtime::text_of(name)};
+    return std::string{text_of(name)};
 }
 
 template <class Element, std::size_t Size>

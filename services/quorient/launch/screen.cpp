@@ -1,8 +1,9 @@
 #include "screen.hpp"
 
 #include "quorient/bus/settings.hpp"
-#include "quorient/runtime/text.hpp"
-#include "quorient/runtime/words.hpp"
+#include "quorient/messages/meaning.hpp"
+#include "quorient/messages/name.hpp"
+#include "quorient/messages/words.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -24,7 +25,7 @@ std::string Screen::line_of(const HealthEvent& event) const
 {
     const Identity identity{event.epoch, event.sequence};
     const auto time = event.epoch == 0 ? std::string{"         "} : fmt::format("{:7.3f} s", run_.time_s(identity));
-    return fmt::format("{}  {:<11} {}", time, runtime::text_of(event.source_name), runtime::text_of(event.text));
+    return fmt::format("{}  {:<11} {}", time, text_of(event.source_name), text_of(event.text));
 }
 
 void Screen::on_event(const HealthEvent& event)
@@ -50,13 +51,13 @@ void Screen::draw(const Processes& processes)
         const auto* integrator = processes.find("attitude-" + lane.name);
         const int restarts = (detector ? detector->restarts : 0) + (integrator ? integrator->restarts : 0);
         text += fmt::format("{:<6}{:<12}{:<13}{:<18}{:<14}{}\n", lane.name, bus::to_string(lane.vendor),
-                            runtime::to_string(static_cast<VerdictState>(lane.verdict.state)),
-                            lane.verdict.isolated_mask ? runtime::describe_axes(lane.verdict.isolated_mask) : "-",
+                            to_string(state_of(lane.verdict)),
+                            lane.verdict.isolated_mask ? run_.names_of(lane.verdict.isolated_mask) : "-",
                             lane.errors.compared ? fmt::format("{:.2e}", lane.errors.final_rad) : "-", restarts);
     }
     const auto& voted = run_.voted();
     if (system_.has_attitude())
-        text += fmt::format("{:<6}{:<12}{:<13}{:<18}{:<14}\n", "voted", "", runtime::to_string(static_cast<VoteLevel>(voted.latest.level)),
+        text += fmt::format("{:<6}{:<12}{:<13}{:<18}{:<14}\n", "voted", "", to_string(level_of(voted.latest)),
                             "", voted.errors.compared ? fmt::format("{:.2e}", voted.errors.final_rad) : "-");
     int lines = (system_.has_attitude() ? 3 : 2) + static_cast<int>(run_.lanes().size());
     for (const auto& line : latest_) {

@@ -2,6 +2,7 @@
 
 #include "cli/json_output.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"
+#include "quorient/messages/meaning.hpp"
 
 namespace quorient::report {
 
@@ -14,7 +15,7 @@ nlohmann::ordered_json or_null(const std::optional<double>& value)
 
 bool seen(const FaultVerdict& verdict)
 {
-    return verdict.state >= static_cast<std::uint8_t>(VerdictState::suspect);
+    return sees_fault(verdict);
 }
 
 }  // namespace
@@ -60,7 +61,7 @@ void ReplayReport::judge(std::size_t lane, const FaultVerdict& verdict)
 void ReplayReport::on_voted(const VotedAttitude& voted)
 {
     const bool held =
-        voted.level == static_cast<std::uint8_t>(VoteLevel::coasting) || voted.level == static_cast<std::uint8_t>(VoteLevel::lost);
+        level_of(voted) == VoteLevel::coasting || level_of(voted) == VoteLevel::lost;
     if (!held) final_attitude_ = voted;
 }
 

@@ -2,8 +2,9 @@
 
 #include "cli/json_output.hpp"
 #include "quorient/bus/settings.hpp"
-#include "quorient/runtime/text.hpp"
-#include "quorient/runtime/words.hpp"
+#include "quorient/messages/meaning.hpp"
+#include "quorient/messages/name.hpp"
+#include "quorient/messages/words.hpp"
 #include "vessel_summary.hpp"
 
 #include <fmt/format.h>
@@ -19,19 +20,19 @@ std::string error_text(const evaluation::Errors& errors)
     return fmt::format("largest {:.2e}, final {:.2e} rad", errors.largest_rad, errors.final_rad);
 }
 
-std::string triad_text(AxisMask used)
+std::string triad_text(const evaluation::RunObserver& run, AxisMask used)
 {
     if (used == 0) return "-";
-    return fmt::format("{} {}", std::popcount(used) == 3 ? "working triad" : "working", runtime::describe_axes(used));
+    return fmt::format("{} {}", std::popcount(used) == 3 ? "working triad" : "working", run.names_of(used));
 }
 
 std::string isolation_text(const evaluation::RunObserver& run, const evaluation::LaneRecord& lane)
 {
     if (!lane.isolated_at) return "isolated nothing";
     const auto frames = run.frames_to_isolation(lane);
-    return fmt::format("isolated {} at {:.3f} s{}, {}", runtime::describe_axes(lane.isolated_first), run.time_s(*lane.isolated_at),
+    return fmt::format("isolated {} at {:.3f} s{}, {}", run.names_of(lane.isolated_first), run.time_s(*lane.isolated_at),
                        frames ? fmt::format(" ({} frame{} into the fault)", *frames, *frames == 1 ? "" : "s") : "",
-                       triad_text(lane.triad_after));
+                       triad_text(run, lane.triad_after));
 }
 
 /// The axes that the expectation allows and demands.
@@ -44,7 +45,7 @@ bool as_expected(const system::System& system, const evaluation::RunObserver& ru
     for (std::size_t axis = 0; axis < max_axes; ++axis) {
         if (!has_axis(isolated, axis)) continue;
         const auto instrument = run.description()->instrument[axis];
-        if (runtime::text_of(run.description()->instrument_name[instrument]) != *expect.instrument) return false;
+        if (text_of(run.description()->instrument_name[instrument]) != *expect.instrument) return false;
     }
     return true;
 }
@@ -62,7 +63,7 @@ std::string summary_text(const system::System& system, const evaluation::RunObse
     if (!system.has_attitude()) return vessel_text(system, run);
     std::string text = fmt::format("{}: {} frames\n", system.name, run.truth_frames());
     if (run.fault_began())
-        text += fmt::format("fault    {} from {:.3f} s{}\n", runtime::describe_axes(run.faulty()), run.time_s(*run.fault_began()),
+        text += fmt::format("fault    {} from {:.3f} s{}\n", run.names_of(run.faulty()), run.time_s(*run.fault_began()),
                             run.fault_ended() ? fmt::format(" to {:.3f} s", run.time_s(*run.fault_ended())) : "");
     else text += "fault    none\n";
     for (const auto& lane : run.lanes()) {
@@ -72,7 +73,7 @@ std::string summary_text(const system::System& system, const evaluation::RunObse
     }
     const auto& voted = run.voted();
     text += fmt::format("voted    {} frames, {} missing, level {}; attitude error {}\n", voted.frames, run.missing_voted(),
-                        runtime::to_string(static_cast<VoteLevel>(voted.latest.level)), error_text(voted.errors));
+                        to_string(level_of(voted.latest)), error_text(voted.errors));
     if (run.without_rollback().compared > 0)
         text += fmt::format("without roll-back and leaving out suspects (lane {}'s verdicts): attitude error {}\n",
                             run.lanes().front().name, error_text(run.without_rollback()));
@@ -106,7 +107,7 @@ nlohmann::ordered_json summary_json(const system::System& system, const evaluati
     json["voted"] = {{"frames", run.voted().frames},
                      {"missing", run.missing_voted()},
                      {"disordered", run.voted().disordered},
-                     {"level", runtime::to_string(static_cast<VoteLevel>(run.voted().latest.level))},
+                     {"level", to_string(level_of(run.voted().latest))},
                      {"attitude", errors_json(run.voted().errors)}};
     json["without_rollback"] = errors_json(run.without_rollback());
     json["unmet"] = unmet(system, run);
@@ -122,7 +123,7 @@ std::vector<std::string> unmet(const system::System& system, const evaluation::R
         failures.emplace_back("the fault never took effect");
     for (const auto& lane : run.lanes()) {
         if (!as_expected(system, run, lane.isolated_ever))
-            failures.push_back(fmt::format("lane {} isolated {}", lane.name, runtime::describe_axes(lane.isolated_ever)));
+            failures.push_back(fmt::format("lane {} isolated {}", lane.name, run.names_of(lane.isolated_ever)));
         const auto frames = run.frames_to_isolation(lane);
         if (expect.within_frames && (!frames || *frames > *expect.within_frames))
             failures.push_back(fmt::format("lane {} isolated after {} frames, {} allowed", lane.name,

@@ -1,8 +1,6 @@
 #include "vessel_summary.hpp"
 
 #include "quorient/bus/settings.hpp"
-#include "quorient/runtime/describe.hpp"
-#include "quorient/runtime/text.hpp"
 
 #include <fmt/format.h>
 
@@ -14,7 +12,7 @@ constexpr double least_share_of_verdicts = 0.9;
 
 std::string name_of(const evaluation::RunObserver& run, std::size_t axis)
 {
-    return run.description() ? runtime::describe_axes(axis_bit(axis), *run.description()) : runtime::describe_axes(axis_bit(axis));
+    return run.names_of(axis_bit(axis));
 }
 
 std::string period(const evaluation::Spell& spell)

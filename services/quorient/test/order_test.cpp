@@ -5,6 +5,7 @@
 #include "quorient/bus/local_bus.hpp"
 #include "quorient/bus/topics.hpp"
 #include "quorient/messages/codes.hpp"
+#include "quorient/messages/meaning.hpp"
 #include "quorient/runtime/node.hpp"
 
 #include <gtest/gtest.h>
@@ -76,7 +77,7 @@ protected:
         FaultCommand command;
         command.unit = 1;
         command.request = request;
-        command.action = static_cast<std::uint8_t>(CommandAction::readmit);
+        command.action = octet(CommandAction::readmit);
         const auto bus = hub.open();
         runtime::EventLoop loop(*bus, clock, never_stop);
         const Order order(command, *bus, loop);

@@ -1,5 +1,7 @@
 #include "calibration_report.hpp"
 
+#include "quorient/messages/words.hpp"
+
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>

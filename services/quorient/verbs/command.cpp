@@ -2,6 +2,7 @@
 
 #include "order.hpp"
 #include "quorient/messages/codes.hpp"
+#include "quorient/messages/meaning.hpp"
 #include "quorient/runtime/signals.hpp"
 #include "quorient/simulation/faults.hpp"
 #include "cli/system_options.hpp"
@@ -39,7 +40,7 @@ FaultCommand inject_command(const CommandOptions& options)
 {
     FaultCommand command;
     if (options.clear) {
-        command.action = static_cast<std::uint8_t>(CommandAction::clear);
+        command.action = octet(CommandAction::clear);
         return command;
     }
     const auto fault = simulation::parse_fault(options.fault);
@@ -79,7 +80,7 @@ void add_readmit(Program& program)
         "Example:\n  quorient readmit --axis 1");
     verb.run([options] {
         FaultCommand command;
-        command.action = static_cast<std::uint8_t>(CommandAction::readmit);
+        command.action = octet(CommandAction::readmit);
         for (const auto axis : options->axes) command.axes |= axis_bit(axis);
         finish(send(*options, command));
     });
@@ -94,7 +95,7 @@ void add_reset(Program& program)
     verb.footer("Example:\n  quorient reset --attitude 1,0,0,0");
     verb.run([options] {
         FaultCommand command;
-        command.action = static_cast<std::uint8_t>(CommandAction::reset_attitude);
+        command.action = octet(CommandAction::reset_attitude);
         std::copy_n(options->attitude.begin(), command.attitude.size(), command.attitude.begin());
         finish(send(*options, command));
     });

@@ -2,7 +2,8 @@
 
 #include "quorient/bus/topics.hpp"
 #include "quorient/messages/codes.hpp"
-#include "quorient/runtime/text.hpp"
+#include "quorient/messages/meaning.hpp"
+#include "quorient/messages/name.hpp"
 
 #include <fmt/format.h>
 
@@ -38,7 +39,7 @@ Order::Order(const FaultCommand& command, bus::Bus& bus, runtime::EventLoop& loo
     : command_(command),
       loop_(loop),
       commands_(bus.advertise(bus::topics::command)),
-      of_a_frame_(command.action == static_cast<std::uint8_t>(CommandAction::reset_attitude)),
+      action_of(of_a_frame_(command) == CommandAction::reset_attitude),
       search_ns_(concerned_role(command.action) == ServiceRole::sensor ? 0 : all_found_ns),
       begin_ns_(loop.clock().steady_ns())
 {
@@ -76,16 +77,16 @@ void Order::give(std::int64_t now_ns)
 
 void Order::on_status(const ServiceStatus& status)
 {
-    if (status.unit != command_.unit || status.role != static_cast<std::uint8_t>(concerned_role(command_.action))) return;
-    if (status.state == static_cast<std::uint8_t>(ServiceState::stopping)) concerned_.erase(status.service);
-    else concerned_.try_emplace(status.service, runtime::text_of(status.name));
+    if (status.unit != command_.unit || status.role != octet(concerned_role(command_.action))) return;
+    if (state_of(status) == ServiceState::stopping) concerned_.erase(status.service);
+    else concerned_.try_emplace(status.service, text_of(status.name));
 }
 
 void Order::on_event(const HealthEvent& event)
 {
     if (event.request != command_.request || !answered_.insert(event.source).second) return;
-    fmt::print("{}: {}\n", runtime::text_of(event.source_name), runtime::text_of(event.text));
-    refused_ = refused_ || event.code == static_cast<std::uint8_t>(EventCode::command_refused);
+    fmt::print("{}: {}\n", text_of(event.source_name), text_of(event.text));
+    refused_ = refused_ || code_of(event) == EventCode::command_refused;
 }
 
 std::string Order::unanswered() const

@@ -1,9 +1,11 @@
 #include "cli/message_json.hpp"
 #include "quorient/bus/settings.hpp"
 #include "quorient/bus/topics.hpp"
+#include "quorient/messages/meaning.hpp"
+#include "quorient/messages/name.hpp"
 #include "quorient/runtime/event_loop.hpp"
 #include "quorient/runtime/signals.hpp"
-#include "quorient/runtime/words.hpp"
+#include "quorient/messages/words.hpp"
 #include "cli/system_options.hpp"
 #include "verbs.hpp"
 
@@ -45,9 +47,9 @@ void print_services(const Services& services)
                "rate/Hz", "p50/us", "p99/us", "gaps", "late", "foreign", "rejected");
     for (const auto& [id, heard] : services) {
         const auto& status = heard.latest;
-        fmt::print("{:<14}{:<12}{:<10}{:<12}{:<10}{:>9.1f}{:>11.0f}{:>11.0f}{:>8}{:>8}{:>9}{:>10}\n", runtime::text_of(status.name),
-                   runtime::to_string(static_cast<ServiceRole>(status.role)), runtime::to_string(static_cast<ServiceState>(status.state)),
-                   bus::to_string(static_cast<Vendor>(status.vendor)), bus::to_string(static_cast<Transport>(status.transport)),
+        fmt::print("{:<14}{:<12}{:<10}{:<12}{:<10}{:>9.1f}{:>11.0f}{:>11.0f}{:>8}{:>8}{:>9}{:>10}\n", text_of(status.name),
+                   to_string(role_of(status)), to_string(state_of(status)),
+                   bus::to_string(vendor_of(status)), bus::to_string(transport_of(status)),
                    heard.rate_hz(), status.latency_s[0] * 1e6, status.latency_s[2] * 1e6, status.gaps, status.late, status.foreign,
                    status.rejected);
     }
@@ -61,8 +63,8 @@ void print_events(std::vector<HealthEvent> events, std::size_t most)
     for (auto event = events.end() - static_cast<std::ptrdiff_t>(shown); event != events.end(); ++event) {
         const auto seconds = static_cast<std::time_t>(event->wall_time_ns / 1'000'000'000);
         fmt::print("{:%H:%M:%S}.{:03}  {:<11}{:<12}{:<22}{}\n", fmt::gmtime(seconds), event->wall_time_ns / 1'000'000 % 1000,
-                   runtime::to_string(static_cast<Severity>(event->severity)), runtime::text_of(event->source_name),
-                   runtime::to_string(static_cast<EventCode>(event->code)), runtime::text_of(event->text));
+                   to_string(static_cast<Severity>(event->severity)), text_of(event->source_name),
+                   to_string(static_cast<EventCode>(event->code)), text_of(event->text));
     }
 }
 

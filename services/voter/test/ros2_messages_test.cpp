@@ -1,7 +1,8 @@
 #include "ros2_messages.hpp"
 
 #include "quorient/messages/codes.hpp"
-#include "quorient/runtime/text.hpp"
+#include "quorient/messages/meaning.hpp"
+#include "quorient/messages/name.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -27,7 +28,7 @@ ClusterDescription description()
     for (std::size_t axis = 0; axis < 4; ++axis) {
         described.sigma[axis] = 1e-5;
         described.instrument[axis] = static_cast<std::uint8_t>(axis);
-        runtime::copy_text(fmt::format("G{}", axis + 1), described.instrument_name[axis]);
+        copy_text(fmt::format("G{}", axis + 1), described.instrument_name[axis]);
     }
     return described;
 }
@@ -41,15 +42,15 @@ VotedAttitude voted()
     attitude.voter = 1;
     attitude.primary_lane = 2;
     attitude.vouching_mask = 0b010;
-    attitude.excluded_why = {static_cast<std::uint8_t>(LaneExclusion::silent), 0, static_cast<std::uint8_t>(LaneExclusion::disagrees)};
+    attitude.excluded_why = {octet(LaneExclusion::silent), 0, octet(LaneExclusion::disagrees)};
     attitude.used_mask = 0b1011;
     attitude.isolated_mask = 0b0100;
     attitude.excluded_from[2] = 77;
     attitude.attitude = {0.5, 0.5, -0.5, 0.5};
     attitude.rate_rad_s = {0.1, -0.2, 0.3};
     attitude.angle_sigma_rad = 3e-4;
-    attitude.mode = static_cast<std::uint8_t>(AttitudeMode::normal);
-    attitude.level = static_cast<std::uint8_t>(VoteLevel::degraded);
+    attitude.mode = octet(AttitudeMode::normal);
+    attitude.level = octet(VoteLevel::degraded);
     return attitude;
 }
 
@@ -87,10 +88,10 @@ TEST(Ros2Imu, carries_attitude_rate_and_a_third_of_the_angle_variance_about_each
 TEST(Ros2Imu, says_that_there_is_no_orientation_where_it_is_lost)
 {
     auto lost = voted();
-    lost.level = static_cast<std::uint8_t>(VoteLevel::lost);
+    lost.level = octet(VoteLevel::lost);
     EXPECT_EQ(to_imu(lost, {}).orientation_covariance[0], -1);
     lost = voted();
-    lost.mode = static_cast<std::uint8_t>(AttitudeMode::lost);
+    lost.mode = octet(AttitudeMode::lost);
     EXPECT_EQ(to_imu(lost, {}).orientation_covariance[0], -1);
     EXPECT_GT(to_imu(voted(), {}).orientation_covariance[0], 0);
 }
@@ -116,9 +117,9 @@ TEST(HostTime, keeps_the_instruments_spacing_and_is_never_later_than_arrival)
 std::string find(const DiagnosticArray& array, const std::string& name, Level& level)
 {
     for (std::size_t i = 0; i < array.count; ++i) {
-        if (runtime::text_of(array.status[i].name) != "quorient: " + name) continue;
+        if (text_of(array.status[i].name) != "quorient: " + name) continue;
         level = static_cast<Level>(array.status[i].level);
-        return std::string{runtime::text_of(array.status[i].message)};
+        return std::string{text_of(array.status[i].message)};
     }
     return "absent";
 }

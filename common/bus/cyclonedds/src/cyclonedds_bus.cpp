@@ -2,6 +2,7 @@
 
 #include "quorient/bus/iceoryx_guard.hpp"
 #include "quorient/bus/roudi.hpp"
+#include "quorient/messages/meaning.hpp"
 #include "ros2.hpp"
 #include "types.hpp"
 

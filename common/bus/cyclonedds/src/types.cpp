@@ -90,6 +90,23 @@ QUORIENT_SAME(quorient_msgs_FaultVerdict, FaultVerdict, detectable_remaining, de
 QUORIENT_SAME(quorient_msgs_FaultVerdict, FaultVerdict, adopted, adopted);
 QUORIENT_SAME(quorient_msgs_FaultVerdict, FaultVerdict, padding, padding);
 
+static_assert(std::is_trivially_copyable_v<FaultDiagnosis> && sizeof(quorient_msgs_FaultDiagnosis) == sizeof(FaultDiagnosis));
+QUORIENT_SAME(quorient_msgs_FaultDiagnosis, FaultDiagnosis, epoch, epoch);
+QUORIENT_SAME(quorient_msgs_FaultDiagnosis, FaultDiagnosis, sequence_number, sequence);
+QUORIENT_SAME(quorient_msgs_FaultDiagnosis, FaultDiagnosis, sample_time_ns, sample_time_ns);
+QUORIENT_SAME(quorient_msgs_FaultDiagnosis, FaultDiagnosis, size, size);
+QUORIENT_SAME(quorient_msgs_FaultDiagnosis, FaultDiagnosis, sigma, sigma);
+QUORIENT_SAME(quorient_msgs_FaultDiagnosis, FaultDiagnosis, bias, bias);
+QUORIENT_SAME(quorient_msgs_FaultDiagnosis, FaultDiagnosis, bias_sigma, bias_sigma);
+QUORIENT_SAME(quorient_msgs_FaultDiagnosis, FaultDiagnosis, unit, unit);
+QUORIENT_SAME(quorient_msgs_FaultDiagnosis, FaultDiagnosis, detector, detector);
+QUORIENT_SAME(quorient_msgs_FaultDiagnosis, FaultDiagnosis, provisional_mask, provisional_mask);
+QUORIENT_SAME(quorient_msgs_FaultDiagnosis, FaultDiagnosis, absent_mask, absent_mask);
+QUORIENT_SAME(quorient_msgs_FaultDiagnosis, FaultDiagnosis, degraded_mask, degraded_mask);
+QUORIENT_SAME(quorient_msgs_FaultDiagnosis, FaultDiagnosis, diagnosis, diagnosis);
+QUORIENT_SAME(quorient_msgs_FaultDiagnosis, FaultDiagnosis, kind, kind);
+QUORIENT_SAME(quorient_msgs_FaultDiagnosis, FaultDiagnosis, padding, padding);
+
 static_assert(std::is_trivially_copyable_v<AttitudeState> && sizeof(quorient_msgs_AttitudeState) == sizeof(AttitudeState));
 QUORIENT_SAME(quorient_msgs_AttitudeState, AttitudeState, epoch, epoch);
 QUORIENT_SAME(quorient_msgs_AttitudeState, AttitudeState, sequence_number, sequence);
@@ -230,9 +247,9 @@ const dds_topic_descriptor_t& descriptor_of(TypeId type)
     if (is_ros2(type)) return ros2_descriptor_of(type);
     static const std::array<const dds_topic_descriptor_t*, type_count> descriptors{
         &quorient_msgs_ClusterDescription_desc, &quorient_msgs_SensorFrame_desc,   &quorient_msgs_TruthState_desc,
-        &quorient_msgs_FaultVerdict_desc,       &quorient_msgs_AttitudeState_desc, &quorient_msgs_VoterOutput_desc,
-        &quorient_msgs_VotedAttitude_desc,      &quorient_msgs_HealthEvent_desc,   &quorient_msgs_ServiceStatus_desc,
-        &quorient_msgs_FaultCommand_desc};
+        &quorient_msgs_FaultVerdict_desc,       &quorient_msgs_FaultDiagnosis_desc, &quorient_msgs_AttitudeState_desc,
+        &quorient_msgs_VoterOutput_desc,        &quorient_msgs_VotedAttitude_desc,  &quorient_msgs_HealthEvent_desc,
+        &quorient_msgs_ServiceStatus_desc,      &quorient_msgs_FaultCommand_desc};
     return *descriptors[static_cast<std::size_t>(type)];
 }
 

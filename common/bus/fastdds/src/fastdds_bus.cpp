@@ -1,5 +1,7 @@
 #include "quorient/bus/fastdds_bus.hpp"
 
+#include "quorient/messages/meaning.hpp"
+
 #include "participant.hpp"
 #include "ros2.hpp"
 #include "types.hpp"

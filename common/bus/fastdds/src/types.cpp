@@ -30,6 +30,8 @@ eprosima::fastdds::dds::TypeSupport type_support_of(TypeId type)
             return make<quorient_msgs::TruthStatePubSubType, TruthState>();
         case TypeId::fault_verdict:
             return make<quorient_msgs::FaultVerdictPubSubType, FaultVerdict>();
+        case TypeId::fault_diagnosis:
+            return make<quorient_msgs::FaultDiagnosisPubSubType, FaultDiagnosis>();
         case TypeId::attitude_state:
             return make<quorient_msgs::AttitudeStatePubSubType, AttitudeState>();
         case TypeId::voter_output:

@@ -49,7 +49,7 @@ TEST(FastTypes, are_plain_and_bounded)
 TEST(FastTypes, have_the_size_of_their_cdr_form)
 {
     const std::vector<std::size_t> plain_sizes{
-        sizeof(ClusterDescription), sizeof(SensorFrame),   sizeof(TruthState),  sizeof(FaultVerdict),  sizeof(AttitudeState),
+        sizeof(ClusterDescription), sizeof(SensorFrame),   sizeof(TruthState),  sizeof(FaultVerdict),  sizeof(FaultDiagnosis), sizeof(AttitudeState),
         sizeof(VotedAttitude),      sizeof(VotedAttitude), sizeof(HealthEvent), sizeof(ServiceStatus), sizeof(FaultCommand)};
     for (std::size_t type = 0; type < type_count; ++type) {
         auto support = fastdds::type_support_of(static_cast<TypeId>(type));
@@ -87,6 +87,9 @@ TEST(FastTypes, lie_in_memory_as_the_plain_structs)
                   QUORIENT_MEMBER(suspect_mask), QUORIENT_MEMBER(candidate_set), QUORIENT_MEMBER(working_mask), QUORIENT_MEMBER(kind),
                   QUORIENT_MEMBER(state), QUORIENT_MEMBER(candidate_count), QUORIENT_MEMBER(candidates_truncated),
                   QUORIENT_MEMBER(detectable_remaining), QUORIENT_MEMBER(adopted), QUORIENT_MEMBER(padding)));
+    EXPECT_EQ(plain_places<FaultDiagnosis>(),
+              generated_places<quorient_msgs::FaultDiagnosis>(
+                  QUORIENT_MEMBER(epoch), QUORIENT_MEMBER(sequence_number), QUORIENT_MEMBER(sample_time_ns), QUORIENT_MEMBER(size), QUORIENT_MEMBER(sigma), QUORIENT_MEMBER(bias), QUORIENT_MEMBER(bias_sigma), QUORIENT_MEMBER(unit), QUORIENT_MEMBER(detector), QUORIENT_MEMBER(provisional_mask), QUORIENT_MEMBER(absent_mask), QUORIENT_MEMBER(degraded_mask), QUORIENT_MEMBER(diagnosis), QUORIENT_MEMBER(kind), QUORIENT_MEMBER(padding)));
     EXPECT_EQ(plain_places<AttitudeState>(),
               generated_places<quorient_msgs::AttitudeState>(
                   QUORIENT_MEMBER(epoch), QUORIENT_MEMBER(sequence_number), QUORIENT_MEMBER(sample_time_ns), QUORIENT_MEMBER(verdict_epoch),

@@ -1,11 +1,13 @@
 #pragma once
 
-#include "quorient/attitude/quaternion.hpp"
+#include "quorient/rotation/quaternion.hpp"
 
 #include <string>
 #include <tl/expected.hpp>
 
 namespace quorient::attitude {
+
+using namespace rotation;  // quaternions are this room's numbers
 
 /// The attitude of a body at rest, from what its accelerometers feel: R's z axis points up, so that the specific force at rest
 /// is (0, 0, +g) in R. Roll and pitch follow from gravity, the heading is given.

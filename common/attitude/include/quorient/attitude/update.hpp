@@ -1,6 +1,6 @@
 #pragma once
 
-#include "quorient/attitude/quaternion.hpp"
+#include "quorient/rotation/quaternion.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -12,6 +12,8 @@
 #include <vector>
 
 namespace quorient::attitude {
+
+using namespace rotation;  // quaternions are this room's numbers
 
 /// What the body turned in one interval: the integral of the body rate [rad], not a rotation vector.
 struct Sample {

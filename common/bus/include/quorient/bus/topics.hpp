@@ -4,6 +4,7 @@
 #include "quorient/messages/attitude_state.hpp"
 #include "quorient/messages/cluster_description.hpp"
 #include "quorient/messages/fault_command.hpp"
+#include "quorient/messages/fault_diagnosis.hpp"
 #include "quorient/messages/fault_verdict.hpp"
 #include "quorient/messages/health_event.hpp"
 #include "quorient/messages/sensor_frame.hpp"
@@ -23,6 +24,7 @@ enum class TypeId : std::size_t {
     sensor_frame,
     truth_state,
     fault_verdict,
+    fault_diagnosis,
     attitude_state,
     voter_output,
     voted_attitude,
@@ -32,7 +34,7 @@ enum class TypeId : std::size_t {
     ros2_imu,
     ros2_diagnostics,
 };
-inline constexpr std::size_t type_count = 10;  ///< types in the IDL
+inline constexpr std::size_t type_count = 11;  ///< types in the IDL
 
 /// A topic as a vendor's bus sees it.
 struct TopicSpec {
@@ -58,6 +60,8 @@ inline constexpr Topic<ClusterDescription> cluster{
 inline constexpr Topic<SensorFrame> frame{"quorient/frame", TypeId::sensor_frame, {}};
 inline constexpr Topic<TruthState> truth{"quorient/truth", TypeId::truth_state, {}};
 inline constexpr Topic<FaultVerdict> verdict{"quorient/verdict", TypeId::fault_verdict, {.transient_local = true}};
+inline constexpr Topic<FaultDiagnosis> diagnosis{
+    "quorient/diagnosis", TypeId::fault_diagnosis, {.transient_local = true, .depth = 1, .latched = true}};
 inline constexpr Topic<AttitudeState> attitude{"quorient/attitude", TypeId::attitude_state, {.transient_local = true}};
 inline constexpr Topic<VotedAttitude> voter_output{"quorient/voter_output", TypeId::voter_output, {.transient_local = true}};
 // No history: a late reader would also receive the weaker voters' history, behind frames that it has already read.
@@ -67,7 +71,7 @@ inline constexpr Topic<ServiceStatus> status{"quorient/status", TypeId::service_
 inline constexpr Topic<FaultCommand> command{"quorient/command", TypeId::fault_command, {.depth = 64}};
 
 /// Every topic, for tools that treat them alike.
-inline constexpr auto all = std::tuple{cluster, frame, truth, verdict, attitude, voter_output, voted, event, status, command};
+inline constexpr auto all = std::tuple{cluster, frame, truth, verdict, diagnosis, attitude, voter_output, voted, event, status, command};
 
 }  // namespace topics
 }  // namespace quorient::bus

@@ -85,6 +85,8 @@ public:
     std::uint64_t truth_frames() const { return truth_frames_; }
     Identity newest_truth() const { return newest_truth_; }
     const std::optional<ClusterDescription>& description() const { return description_; }
+    /// What an operator calls these axes; their numbers before the description is known.
+    std::string names_of(AxisMask axes) const;
     double time_s(Identity identity) const;
 
     /// Frames from the fault's first to the lane's isolation, counting both ends' difference.

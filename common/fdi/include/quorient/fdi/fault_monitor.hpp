@@ -7,6 +7,7 @@
 #include "quorient/fdi/settings.hpp"
 #include "quorient/fdi/verdict_machine.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"
+#include "quorient/messages/exclusions.hpp"
 #include "quorient/messages/fault_verdict.hpp"
 #include "quorient/messages/sensor_frame.hpp"
 
@@ -39,7 +40,7 @@ public:
     const FaultVerdict& assess(const SensorFrame& frame);
 
     /// Takes over the exclusions of a lane that went on while this detector was away, in sequences of the current epoch.
-    void adopt(const std::array<std::uint64_t, max_axes>& excluded_from);
+    void adopt(const Exclusions& excluded_from);
 
     /// @returns those of these axes that are excluded and disagree with the others still (Detector::expectation): a method that keeps watch
     /// on them may be unable to name them again. Others are never listed.

@@ -3,6 +3,7 @@
 #include "quorient/fdi/detector.hpp"
 #include "quorient/fdi/settings.hpp"
 #include "quorient/messages/codes.hpp"
+#include "quorient/messages/exclusions.hpp"
 #include "quorient/messages/fault_verdict.hpp"
 
 #include <array>
@@ -37,7 +38,7 @@ public:
     const FaultVerdict& update(Identity identity, const Assessment& assessment, AxisMask broken = 0);
 
     /// Takes over exclusions, in sequences of the current epoch. Those already held keep the earlier onset.
-    void adopt(const std::array<std::uint64_t, max_axes>& excluded_from);
+    void adopt(const Exclusions& excluded_from);
 
     /// Trusts these axes again. @returns those that were excluded before.
     AxisMask readmit(AxisMask axes);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "quorient/messages/exclusions.hpp"
 #include "quorient/messages/limits.hpp"
 #include "quorient/messages/stamps.hpp"
 
@@ -19,7 +20,7 @@ struct AttitudeState {
     std::array<double, 4> reset_rotation{1, 0, 0, 0};     ///< q_new o conj(q_old) of the latest reset
     std::array<double, 3> rate_rad_s{};                   ///< body frame, mean over the frame's interval
     double angle_sigma_rad = 0;                           ///< standard deviation of the attitude's angle error
-    std::array<std::uint64_t, max_axes> excluded_from{};  ///< as in FaultVerdict: what a restarted detector or integrator adopts
+    Exclusions excluded_from;                             ///< as in FaultVerdict: what a restarted detector or integrator adopts
     Stamps stamp_ns{};
     std::uint32_t unit = 0;
     std::uint32_t lane = 0;

@@ -1,15 +1,12 @@
 #pragma once
 
 #include "quorient/messages/limits.hpp"
+#include "quorient/messages/name.hpp"
 
 #include <array>
 #include <cstdint>
 
 namespace quorient {
-
-/// A short name in a message: zero-terminated unless full.
-template <std::size_t Size>
-using Name = std::array<char, Size>;
 
 /// Where a unit's sensors point and how good they are. Latched: every consumer learns the geometry from it.
 struct ClusterDescription {

@@ -17,6 +17,26 @@ enum class VerdictState : std::uint8_t {
     isolated = 4,   // the faulty axes are named
     ambiguous = 5,  // a fault, and the sets that explain it
     blind = 6,      // more faults than the data can tell
+    provisional = 7,  // an axis is left out until the contradiction ends or is confirmed
+    saturated = 8,    // all instruments are at their range: nobody is to blame, and the attitude is not trustworthy from here on
+};
+
+/// What is wrong with an axis that a detector left out, isolated, or reports as degraded.
+enum class Diagnosis : std::uint8_t {
+    none = 0,
+    bias = 1,           // rad/s too much
+    gain = 2,           // reads this share of the true rate
+    sign = 3,           // reads the true rate with the wrong sign
+    delay = 4,          // s late
+    stuck = 5,          // repeats one value while it should move
+    zero = 6,           // stuck at exactly 0
+    saturated = 7,      // at its range while the others are not
+    noise = 8,          // times its usual noise
+    spikes = 9,         // single samples, rad/s
+    mounting = 10,      // turned against the others by this angle, rad
+    outside_class = 11, // beyond what its class of sensors allows, rad/s
+    erratic = 12,       // comes and goes
+    absent = 13,        // sends no data
 };
 
 /// How far an attitude can be trusted.
@@ -60,11 +80,17 @@ enum class EventCode : std::uint8_t {
     readmitted = 14,
     redundancy_exhausted = 15,
     adopted = 16,
+    left_out = 17,   // provisionally
+    returned = 18,   // of an axis that was left out
+    saturated = 19,
     rolled_back = 20,
     history_too_short = 21,
     coasting = 22,
     lost = 23,
     seeded = 24,
+    absent = 25,     // an axis sends no data
+    present = 26,    // and sends again
+    degraded = 27,   // noisy or late, still in use
     primary_changed = 30,
     lane_excluded = 31,
     lane_returned = 32,
@@ -84,6 +110,9 @@ enum class EventCode : std::uint8_t {
     command_refused = 53,
     unknown_revision = 54,
     consumers_missing = 55,
+    other_contract = 56,  // a peer speaks another version of the wire contract
+    security = 57,        // a peer or a sample was refused
+    overloaded = 58,      // frames are skipped, since this machine cannot carry the rate
 };
 
 enum class ServiceState : std::uint8_t { unknown = 0, starting = 1, ready = 2, running = 3, stopping = 4 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "quorient/messages/exclusions.hpp"
 #include "quorient/messages/limits.hpp"
 #include "quorient/messages/stamps.hpp"
 
@@ -8,22 +9,13 @@
 
 namespace quorient {
 
-namespace detail {
-constexpr std::array<std::uint64_t, max_axes> all_never()
-{
-    std::array<std::uint64_t, max_axes> none{};
-    none.fill(never);
-    return none;
-}
-}  // namespace detail
-
 /// All that a detector holds true of its cluster at one frame. A complete state: the newest identity wins, so the order and
 /// the repetition of verdicts cannot matter.
 struct FaultVerdict {
     std::uint64_t epoch = 0;
     std::uint64_t sequence = 0;
     std::int64_t sample_time_ns = 0;
-    std::array<std::uint64_t, max_axes> excluded_from = detail::all_never();  ///< first contaminated sequence
+    Exclusions excluded_from;                 ///< of isolated axes, and of those left out provisionally
     double statistic = 0;                                                     ///< of the method, and its threshold in the same unit
     double threshold = 0;
     std::array<double, max_axes> residual{};  ///< [rad; m/s]

@@ -3,6 +3,7 @@
 #include "quorient/messages/attitude_state.hpp"
 #include "quorient/messages/cluster_description.hpp"
 #include "quorient/messages/fault_command.hpp"
+#include "quorient/messages/fault_diagnosis.hpp"
 #include "quorient/messages/fault_verdict.hpp"
 #include "quorient/messages/health_event.hpp"
 #include "quorient/messages/sensor_frame.hpp"
@@ -110,6 +111,26 @@ struct Fields<FaultVerdict> {
                                            Field{"candidates_truncated", &M::candidates_truncated},
                                            Field{"detectable_remaining", &M::detectable_remaining},
                                            Field{"adopted", &M::adopted},
+                                           Field{"padding", &M::padding}};
+};
+
+template <>
+struct Fields<FaultDiagnosis> {
+    using M = FaultDiagnosis;
+    static constexpr auto all = std::tuple{Field{"epoch", &M::epoch},
+                                           Field{"sequence_number", &M::sequence},
+                                           Field{"sample_time_ns", &M::sample_time_ns},
+                                           Field{"size", &M::size},
+                                           Field{"sigma", &M::sigma},
+                                           Field{"bias", &M::bias},
+                                           Field{"bias_sigma", &M::bias_sigma},
+                                           Field{"unit", &M::unit},
+                                           Field{"detector", &M::detector},
+                                           Field{"provisional_mask", &M::provisional_mask},
+                                           Field{"absent_mask", &M::absent_mask},
+                                           Field{"degraded_mask", &M::degraded_mask},
+                                           Field{"diagnosis", &M::diagnosis},
+                                           Field{"kind", &M::kind},
                                            Field{"padding", &M::padding}};
 };
 

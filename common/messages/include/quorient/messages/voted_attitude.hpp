@@ -1,5 +1,6 @@
 #pragma once
 
+#include "quorient/messages/exclusions.hpp"
 #include "quorient/messages/limits.hpp"
 #include "quorient/messages/stamps.hpp"
 
@@ -19,7 +20,7 @@ struct VotedAttitude {
     std::array<double, 3> rate_rad_s{};                ///< body frame
     double angle_sigma_rad = 0;
     double spread_rad = 0;                                ///< largest geodesic angle among the lanes that vouch
-    std::array<std::uint64_t, max_axes> excluded_from{};  ///< as in FaultVerdict, of the primary lane
+    Exclusions excluded_from;                             ///< as in FaultVerdict, of the primary lane
     Stamps stamp_ns{};
     std::uint32_t unit = 0;
     std::uint32_t voter = 0;

@@ -4,6 +4,7 @@
 #include "quorient/messages/fault_command.hpp"
 #include "quorient/messages/health_event.hpp"
 #include "quorient/messages/identity.hpp"
+#include "quorient/messages/meaning.hpp"
 #include "quorient/messages/service_status.hpp"
 #include "quorient/runtime/event_loop.hpp"
 #include "quorient/runtime/heartbeat.hpp"
@@ -45,7 +46,7 @@ public:
 
     /// Tells the new state at once.
     void set_state(ServiceState state);
-    ServiceState state() const { return static_cast<ServiceState>(status_.state); }
+    ServiceState state() const { return state_of(status_); }
 
     /// Counters are written here by the service and go out twice a second.
     ServiceStatus& status() { return status_; }

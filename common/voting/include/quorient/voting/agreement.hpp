@@ -2,6 +2,7 @@
 
 #include "quorient/messages/attitude_state.hpp"
 #include "quorient/messages/limits.hpp"
+#include "quorient/rotation/quaternion.hpp"
 
 #include <array>
 #include <bitset>
@@ -9,20 +10,14 @@
 
 namespace quorient::voting {
 
+using rotation::angle_between;
+using rotation::conjugate;
+using rotation::is_attitude;
+using rotation::no_rotation;
+using rotation::product;
+
 /// q_RB, body -> reference, Hamilton (w,x,y,z), as on the wire.
-using Quaternion = std::array<double, 4>;
-
-inline constexpr Quaternion no_rotation{1, 0, 0, 0};
-
-Quaternion product(const Quaternion& left, const Quaternion& right);  ///< left o right
-Quaternion conjugate(const Quaternion& q);
-
-/// Angle of the shortest rotation from one attitude to the other [rad], 0 to pi: 2 atan2(|v|, |w|) of conj(a) o b.
-/// Accurate near 0, where acos is not.
-double geodesic_angle(const Quaternion& a, const Quaternion& b);
-
-/// Finite and of unit norm (within 1e-6, far above rounding and far below a wrong attitude).
-bool is_attitude(const Quaternion& q);
+using Quaternion = rotation::Wxyz;
 
 /// Everything a voter computes with is finite and in range.
 bool is_sound(const AttitudeState& sample);
