@@ -61,6 +61,11 @@ Value nasty(Bytes& bytes)
     return value;
 }
 
+inline void spoil(Exclusions& exclusions, Bytes& bytes)
+{
+    exclusions[bytes.below(static_cast<std::uint32_t>(max_axes))] = nasty<std::uint64_t>(bytes);
+}
+
 template <class Value>
 void spoil(Value& value, Bytes& bytes)
 {

@@ -1,7 +1,7 @@
 #include "bytes.hpp"
 #include "quorient/attitude/integrator.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
-#include "quorient/fdi/make_detector.hpp"
+#include "quorient/fdi/methods.hpp"
 #include "quorient/messages/meaning.hpp"
 #include "quorient/runtime/frame_intake.hpp"
 #include "quorient/runtime/intake_report.hpp"

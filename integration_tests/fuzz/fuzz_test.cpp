@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <random>
 #include <string>
@@ -67,7 +68,7 @@ using Input = std::vector<std::uint8_t>;
 /// What libFuzzer kept (libfuzzer.py --keep): one input per line, hexadecimal.
 std::vector<Input> corpus_of(const std::string& target)
 {
-    std::ifstream file{std::string{QUORIENT_SOURCE_DIR} + "/integration_tests/fuzz/corpus/" + target + ".txt"};
+    std::ifstream file{std::filesystem::path{QUORIENT_SOURCE_DIR} / "integration_tests/fuzz/corpus" / (target + ".txt")};
     std::vector<Input> inputs;
     for (std::string line; std::getline(file, line);) {
         Input input(line.size() / 2);

@@ -10,20 +10,40 @@ import sys
 # Room -> rooms whose headers it may include. `services` may use every room.
 ALLOWED = {
     "messages": set(),
-    "geometry": {"messages"},
-    "fdi": {"geometry", "messages"},
-    "attitude": {"geometry", "messages"},
-    "voting": {"messages"},
+    "rotation": set(),
+    "geometry": {"messages", "rotation"},
+    "fdi": {"geometry", "messages", "rotation"},
+    "attitude": {"geometry", "messages", "rotation"},
+    "voting": {"messages", "rotation"},
     "simulation": {"geometry", "messages"},
     "recording": {"messages"},
-    "calibration": {"geometry", "messages"},
+    "calibration": {"fdi", "geometry", "messages", "recording", "rotation"},
     "bus": {"messages"},
     "runtime": {"bus", "messages"},
     "system": {"attitude", "bus", "calibration", "fdi", "geometry", "messages", "runtime", "simulation", "voting"},
+    "evaluation": {"attitude", "bus", "geometry", "messages", "rotation", "system"},
 }
-EIGEN = {"geometry", "fdi", "attitude", "voting", "simulation", "calibration", "system"}
+EIGEN = {"rotation", "geometry", "fdi", "attitude", "voting", "simulation", "calibration", "system"}
+# Rooms within rooms: folder -> folders beside it whose headers it may include.
+INNER = {
+    "services/quorient": {
+        "cli": set(),
+        "report": {"cli"},
+        "launch": {"cli", "report"},
+        "replay": {"cli", "report"},
+        "verbs": {"cli", "launch", "replay", "report"},
+    },
+    "common/fdi/src": {
+        "single_frame": set(),
+        "four_axes": {"single_frame"},
+        "arrays": {"single_frame"},
+        "field": {"arrays"},
+        "observers": set(),
+        "verdict": {"observers"},
+    },
+}
 # What the algorithm rooms must not know: clocks, threads, files, loggers.
-PURE = {"geometry", "fdi", "attitude", "voting"}
+PURE = {"rotation", "geometry", "fdi", "attitude", "voting"}
 IMPURE_HEADERS = re.compile(r"<(thread|mutex|condition_variable|future|chrono|fstream|filesystem|atomic|spdlog/.*)>")
 VENDOR = {
     "fastdds": re.compile(r"<(fastdds|fastrtps|fastcdr)/"),
@@ -57,8 +77,30 @@ def problems(root):
             for vendor, pattern in VENDOR.items():
                 if pattern.match(include) and f"bus/{vendor}/" not in str(path.relative_to(root)):
                     yield f"{where}: {vendor}'s headers stay in common/bus/{vendor}"
+        yield from inner_problems(root, path)
         if room and room not in ALLOWED:
             yield f"{path.relative_to(root)}: room {room} has no stated direction; add it to {pathlib.Path(__file__).name}"
+
+
+def inner_problems(root, path):
+    """Includes between the folders of one room that its order does not allow."""
+    for house, allowed in INNER.items():
+        place = path.relative_to(root).as_posix()
+        inner = place.removeprefix(house + "/").split("/")[0] if place.startswith(house + "/") else None
+        if inner not in allowed:
+            continue
+        for number, include in includes(path):
+            used = re.match(r'"(\w+)/', include)
+            if used and used.group(1) in allowed and used.group(1) not in allowed[inner] | {inner}:
+                yield f"{place}:{number}: {house}/{inner} must not import {used.group(1)}"
+
+
+def upward_references(root):
+    """A room that explains itself by what stands above it cannot be understood alone."""
+    for path in sorted((root / "common").rglob("README.md")):
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            if "services/" in line:
+                yield f"{path.relative_to(root)}:{number}: a room's README must not point up into services/"
 
 
 def figure(root):
@@ -81,7 +123,7 @@ def main():
     if "--figure" in sys.argv:
         figure(root)
         return 0
-    found = list(problems(root))
+    found = list(problems(root)) + list(upward_references(root))
     print("\n".join(found))
     print(f"{len(found)} violations")
     return 1 if found else 0

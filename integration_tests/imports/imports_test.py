@@ -36,6 +36,10 @@ class Imports(unittest.TestCase):
             ("common/runtime/src/a.cpp", "#include <dds/dds.h>"),
             ("common/bus/cyclonedds/src/a.cpp", "#include <fastdds/dds/log/Log.hpp>"),
             ("common/newroom/src/a.cpp", "#include <vector>"),
+            ("services/quorient/cli/a.cpp", '#include "verbs/verbs.hpp"'),
+            ("services/quorient/report/a.cpp", '#include "launch/screen.hpp"'),
+            ("common/fdi/src/single_frame/a.cpp", '#include "verdict/verdict_machine.hpp"'),
+            ("common/fdi/README.md", "as services/quorient does"),
         ]:
             with self.subTest(path=path, line=line):
                 self.assertEqual(self.planted(path, line).returncode, 1)
@@ -45,6 +49,7 @@ class Imports(unittest.TestCase):
             ("common/fdi/src/a.cpp", '#include "quorient/geometry/triads.hpp"'),
             ("common/bus/cyclonedds/src/a.cpp", "#include <dds/dds.h>"),
             ("common/fdi/test/a.cpp", "#include <chrono>"),
+            ("services/quorient/verbs/a.cpp", '#include "replay/offline.hpp"'),
         ]:
             with self.subTest(path=path, line=line):
                 result = self.planted(path, line)

@@ -1,11 +1,11 @@
 // What a frame's way through all services costs on the service thread: our code allocates, locks, logs and throws nothing; what the
 // vendor's calls and threads do is counted apart and printed.
 
-#include "attitude_integrator.hpp"
-#include "parity_fdi.hpp"
+#include "integrator_service.hpp"
+#include "detector_service.hpp"
 #include "quorient/bus/bus.hpp"
 #include "sensor_publisher.hpp"
-#include "voter.hpp"
+#include "voter_service.hpp"
 
 #include <dlfcn.h>
 #include <gtest/gtest.h>
@@ -231,11 +231,11 @@ TEST_P(ServiceThread, allocates_locks_logs_and_throws_nothing_per_frame_in_our_c
     const std::atomic<bool> never{false};
     runtime::EventLoop loop{bus, clock, never};
     voter::VoterService voter{system->voters.front(), bus, loop};
-    std::vector<std::unique_ptr<integrator::AttitudeIntegrator>> integrators;
-    std::vector<std::unique_ptr<detector::ParityFdi>> detectors;
+    std::vector<std::unique_ptr<integrator::IntegratorService>> integrators;
+    std::vector<std::unique_ptr<detector::DetectorService>> detectors;
     for (const auto& lane : system->lanes) {
-        integrators.push_back(std::make_unique<integrator::AttitudeIntegrator>(lane.integrator, bus, loop));
-        detectors.push_back(std::make_unique<detector::ParityFdi>(lane.detector, bus, loop));
+        integrators.push_back(std::make_unique<integrator::IntegratorService>(lane.integrator, bus, loop));
+        detectors.push_back(std::make_unique<detector::DetectorService>(lane.detector, bus, loop));
     }
     auto source = sensor::make_source(system->sensor, 1);
     ASSERT_TRUE(source) << source.error();

@@ -44,7 +44,7 @@ class LiveVerbs(ProcessTest):
         refused = self.run_program("quorient", "readmit", "--axis", 2, "--domain", self.domain)
         self.assertEqual(refused.returncode, 1)
         for detector in named:
-            self.assertIn(f"{detector}: does not readmit what still disagrees with the others: axis 2", refused.stdout, refused.stderr)
+            self.assertIn(f"{detector}: does not readmit what still disagrees with the others: G3", refused.stdout, refused.stderr)
         self.assertEqual(self.run_program("quorient", "inject", "--clear", "--domain", self.domain).returncode, 0)
         readmitted = self.run_program("quorient", "readmit", "--axis", 2, "--domain", self.domain)
         for detector in named:

@@ -2,7 +2,7 @@
 
 #include "parallel.hpp"
 #include "px4_rule.hpp"
-#include "quorient/fdi/accumulating.hpp"
+#include "arrays/accumulating_detector.hpp"
 #include "quorient/messages/meaning.hpp"
 
 #include <fmt/format.h>
@@ -109,7 +109,7 @@ fdi::FaultMonitor accumulating_with(const RecordedArray& array, bool instruments
 {
     fdi::DetectorSettings settings{.method = "accumulating"};
     settings.instruments = instruments;
-    auto detector = fdi::Accumulating::make(settings, array.cluster, noise);
+    auto detector = fdi::AccumulatingDetector::make(settings, array.cluster, noise);
     assert(detector);
     return fdi::FaultMonitor::make(std::move(*detector), fdi::VerdictSettings{}, array.cluster).value();
 }

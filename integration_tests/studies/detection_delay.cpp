@@ -1,6 +1,6 @@
 #include "detection_cells.hpp"
 #include "detection_report.hpp"
-#include "quorient/fdi/accumulating.hpp"
+#include "arrays/accumulating_detector.hpp"
 #include "quorient/messages/meaning.hpp"
 #include "study.hpp"
 #include "cli/program.hpp"

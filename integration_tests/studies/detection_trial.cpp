@@ -49,7 +49,7 @@ void watch(const RecordedArray& array, const Trial& trial, std::size_t at, const
 }
 
 /// The attitude after these frames, which the exclusion reached at the end.
-attitude::Quaternion attitude_after(const std::vector<SensorFrame>& frames, std::size_t from, const geometry::SensorCluster& cluster,
+rotation::Quaternion attitude_after(const std::vector<SensorFrame>& frames, std::size_t from, const geometry::SensorCluster& cluster,
                                     const FaultVerdict& verdict)
 {
     attitude::IntegratorSettings settings;
@@ -59,7 +59,7 @@ attitude::Quaternion attitude_after(const std::vector<SensorFrame>& frames, std:
     integrator.apply(verdict);
     while (integrator.work()) {
     }
-    return attitude::from_array(integrator.state().attitude);
+    return rotation::from_array(integrator.state().attitude);
 }
 
 void compare_attitudes(const RecordedArray& array, const Trial& trial, const std::vector<SensorFrame>& frames, std::size_t first,

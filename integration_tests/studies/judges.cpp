@@ -1,7 +1,7 @@
 #include "judges.hpp"
 
-#include "quorient/fdi/exact_pattern.hpp"
-#include "quorient/fdi/make_detector.hpp"
+#include "single_frame/exact_pattern.hpp"
+#include "quorient/fdi/methods.hpp"
 #include "quorient/geometry/parity_space.hpp"
 #include "quorient/geometry/triads.hpp"
 

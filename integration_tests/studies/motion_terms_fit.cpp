@@ -1,6 +1,6 @@
 #include "motion_terms_fit.hpp"
 
-#include "quorient/fdi/accumulating.hpp"
+#include "arrays/accumulating_detector.hpp"
 #include "quorient/fdi/array_sums.hpp"
 #include "quorient/fdi/noise.hpp"
 #include "quorient/calibration/term_search.hpp"
@@ -45,7 +45,7 @@ double largest_statistic(Samples samples, const HeldOut& part, const fdi::Motion
 {
     fdi::DetectorSettings settings{.method = "accumulating"};
     settings.instruments = true;
-    const auto detector = fdi::Accumulating::make(settings, part.cluster, noise).value();
+    const auto detector = fdi::AccumulatingDetector::make(settings, part.cluster, noise).value();
     fdi::Assessment assessment;
     double largest = 0;
     for (const auto& stretch : part.stretches) {

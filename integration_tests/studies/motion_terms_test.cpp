@@ -127,13 +127,13 @@ TEST(GatedTerms, are_what_most_frames_show_and_not_the_worst)
     };
     const auto terms = terms_of(log);
     ASSERT_TRUE(terms);
-    EXPECT_GT(terms->along_s, jitter_s / 2);
-    EXPECT_LT(terms->along_s, 2 * jitter_s);
-    EXPECT_LT(terms->across_s, jitter_s / 2);
+    EXPECT_GT(terms->jitter_along_s, jitter_s / 2);
+    EXPECT_LT(terms->jitter_along_s, 2 * jitter_s);
+    EXPECT_LT(terms->jitter_across_s, jitter_s / 2);
     for (std::size_t i = 1400; i < log.samples.size(); i += 400) log.samples[i].rate(5) += 10 * degree;
     const auto among_outliers = terms_of(log);
     ASSERT_TRUE(among_outliers);
-    EXPECT_LT(among_outliers->along_s, 2 * jitter_s);
+    EXPECT_LT(among_outliers->jitter_along_s, 2 * jitter_s);
 }
 
 TEST(GatedTerms, are_not_told_by_a_recording_that_never_turned)

@@ -2,7 +2,7 @@
 #include "quorient/runtime/options.hpp"
 #include "quorient/runtime/realtime.hpp"
 #include "quorient/runtime/signals.hpp"
-#include "voter.hpp"
+#include "voter_service.hpp"
 
 namespace {
 

@@ -51,7 +51,6 @@ void add_axes(const VotedAttitude& voted, const ClusterDescription& description,
 {
     const std::size_t count = std::min<std::size_t>(description.axis_count, max_axes);
     for (std::size_t axis = 0; axis < count; ++axis) {
-        const auto instrument = std::min<std::size_t>(description.instrument[axis], max_axes - 1);
         const auto name = fmt::format("axis {} ({})", axis, axis_name(description, axis));
         if (has_axis(voted.isolated_mask, axis))
             add(next(array, voted.unit, name, Level::error, "isolated"), "first bad frame", std::to_string(voted.excluded_from[axis]));
@@ -72,9 +71,9 @@ void add_lanes(const VotedAttitude& voted, const std::vector<voting::LaneSetting
     }
 }
 
-Level level_of(const VotedAttitude& voted)
+Level diagnostic_level(VoteLevel level)
 {
-    switch (level_of(voted)) {
+    switch (level) {
         case VoteLevel::full:
             return Level::ok;
         case VoteLevel::degraded:
@@ -129,7 +128,7 @@ void to_diagnostics(const VotedAttitude& voted, const ClusterDescription* descri
                     const std::vector<VoterHeard>& voters, DiagnosticArray& array)
 {
     array.count = 0;
-    auto* own = next(array, voted.unit, "attitude", level_of(voted), to_string(level_of(voted)));
+    auto* own = next(array, voted.unit, "attitude", diagnostic_level(level_of(voted)), to_string(level_of(voted)));
     add(own, "mode", std::string{to_string(mode_of(voted))});
     add(own, "angle sigma [rad]", fmt::format("{:.3g}", voted.angle_sigma_rad));
     add(own, "lanes' spread [rad]", fmt::format("{:.3g}", voted.spread_rad));

@@ -142,11 +142,6 @@ inline void finish(Integrator& integrator)
     }
 }
 
-inline AttitudeMode mode_of(const AttitudeState& state)
-{
-    return mode_of(state);
-}
-
 inline double angle_to(const AttitudeState& state, const Quaternion& truth)
 {
     return angle_between(from_array(state.attitude), truth);

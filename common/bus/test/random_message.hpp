@@ -23,6 +23,11 @@ void randomise(std::array<Element, Size>& list, std::mt19937_64& random)
     for (auto& element : list) randomise(element, random);
 }
 
+inline void randomise(Exclusions& exclusions, std::mt19937_64& random)
+{
+    for (auto& sequence : exclusions) sequence = random();
+}
+
 /// A message whose every member, padding included, is random.
 template <class Message>
 Message random_message(std::mt19937_64& random)

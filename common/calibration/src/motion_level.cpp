@@ -1,6 +1,6 @@
 #include "quorient/calibration/motion_level.hpp"
 
-#include "quorient/fdi/accumulating.hpp"
+#include "arrays/accumulating_detector.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ std::vector<bool> moving_samples(Samples samples, const Calibration& calibration
 }
 
 /// The nearest that the detector comes to its threshold (1) while the array moves.
-double largest_statistic(Samples samples, const std::vector<bool>& moving, const Calibration& calibration, fdi::Accumulating& detector)
+double largest_statistic(Samples samples, const std::vector<bool>& moving, const Calibration& calibration, fdi::AccumulatingDetector& detector)
 {
     const auto& cluster = calibration.cluster;
     const std::size_t axes = cluster.description.axis_count;
@@ -64,7 +64,7 @@ std::optional<double> motion_level(Samples samples, const Calibration& calibrati
         fdi::DetectorSettings settings{.method = "accumulating"};
         settings.instruments = true;
         settings.motion_noise = level;
-        const auto detector = fdi::Accumulating::make(settings, *cluster);
+        const auto detector = fdi::AccumulatingDetector::make(settings, *cluster);
         if (!detector) return std::nullopt;
         const double largest = largest_statistic(samples, moving, calibration, **detector);
         if (largest <= largest_wanted * (1 + close_enough) && (level == 1 || largest >= largest_wanted * (1 - close_enough))) break;

@@ -53,8 +53,8 @@ TEST(ClusterFile, reads_back_bit_for_bit)
     EXPECT_EQ(read->jitter_along_s, cluster.jitter_along_s);
     EXPECT_EQ(read->motion_level, cluster.motion_level);
     ASSERT_TRUE(read->gated);
-    EXPECT_EQ(read->gated->across_s, cluster.gated->across_s);
-    EXPECT_EQ(read->gated->rate, cluster.gated->rate);
+    EXPECT_EQ(read->gated->jitter_across_s, cluster.gated->jitter_across_s);
+    EXPECT_EQ(read->gated->rate_error, cluster.gated->rate_error);
     EXPECT_EQ(read->origin, cluster.origin);
 }
 

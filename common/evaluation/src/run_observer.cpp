@@ -3,7 +3,7 @@
 #include "quorient/geometry/sensor_cluster.hpp"
 #include "quorient/messages/meaning.hpp"
 #include "quorient/messages/words.hpp"
-#include "quorient/voting/agreement.hpp"
+#include "quorient/rotation/quaternion.hpp"
 
 #include <algorithm>
 

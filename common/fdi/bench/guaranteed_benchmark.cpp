@@ -13,7 +13,7 @@
 namespace {
 
 using namespace quorient;
-using fdi::Guaranteed;
+using fdi::GuaranteedDetector;
 using fdi::GuaranteedPrograms;
 
 constexpr std::size_t compared_frames = 20'000;
@@ -21,7 +21,7 @@ constexpr std::size_t timed_frames = 1024;
 
 struct Setup {
     geometry::SensorCluster cluster;
-    std::unique_ptr<Guaranteed> detector;
+    std::unique_ptr<GuaranteedDetector> detector;
     GuaranteedPrograms programs;
     std::vector<std::vector<double>> frames;
 
@@ -31,7 +31,7 @@ struct Setup {
         fdi::DetectorSettings settings;
         settings.bound = 1;
         settings.threshold = 10;
-        detector = Guaranteed::make(settings, cluster).value();
+        detector = GuaranteedDetector::make(settings, cluster).value();
     }
 };
 

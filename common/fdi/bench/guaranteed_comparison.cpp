@@ -21,7 +21,7 @@ bool near_boundary(const std::vector<geometry::AxisVector>& invariants, double b
 
 }  // namespace
 
-Comparison compare(Guaranteed& detector, GuaranteedPrograms& programs, const geometry::Axes& axes, double bound,
+Comparison compare(GuaranteedDetector& detector, GuaranteedPrograms& programs, const geometry::Axes& axes, double bound,
                    const std::vector<std::vector<double>>& frames)
 {
     std::vector<geometry::AxisVector> invariants;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "guaranteed_programs.hpp"
-#include "quorient/fdi/guaranteed.hpp"
+#include "single_frame/guaranteed_detector.hpp"
 
 #include <cstddef>
 #include <vector>
@@ -18,7 +18,7 @@ struct Comparison {
 };
 
 /// @param bound  sigma, of the detector and the programs alike.
-Comparison compare(Guaranteed& detector, GuaranteedPrograms& programs, const geometry::Axes& axes, double bound,
+Comparison compare(GuaranteedDetector& detector, GuaranteedPrograms& programs, const geometry::Axes& axes, double bound,
                    const std::vector<std::vector<double>>& frames);
 
 }  // namespace quorient::fdi

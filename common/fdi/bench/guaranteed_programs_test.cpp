@@ -13,7 +13,7 @@ void expect_the_same(const std::string& layout, std::uint64_t seed)
     DetectorSettings settings;
     settings.bound = 1;
     settings.threshold = 10;
-    const auto detector = Guaranteed::make(settings, cluster).value();
+    const auto detector = GuaranteedDetector::make(settings, cluster).value();
     GuaranteedPrograms programs(cluster.axes, 1);
     const auto result = compare(*detector, programs, cluster.axes, 1, guaranteed_frames(cluster, 400, seed));
     EXPECT_EQ(result.emptiness_differs, 0U) << layout << ", seed " << seed;

@@ -1,6 +1,6 @@
 // Nanoseconds per assessment of every method on 4, 6, 8 and 24 axes, beside the product z -> V z that none can do without.
 
-#include "quorient/fdi/make_detector.hpp"
+#include "quorient/fdi/methods.hpp"
 #include "quorient/geometry/layouts.hpp"
 #include "quorient/geometry/parity_space.hpp"
 

@@ -1,4 +1,4 @@
-#include "quorient/fdi/accumulating.hpp"
+#include "arrays/accumulating_detector.hpp"
 #include "quorient/fdi/noise.hpp"
 #include "test_clusters.hpp"
 
@@ -148,7 +148,7 @@ Met compare(std::uint64_t seed, bool instruments)
     cluster.quantum.setZero();
     DetectorSettings settings;
     settings.instruments = instruments;
-    const auto detector = Accumulating::make(settings, cluster, MotionNoise{}).value();
+    const auto detector = AccumulatingDetector::make(settings, cluster, MotionNoise{}).value();
     Exhaustive exhaustive(cluster, instruments);
     std::vector<Fault> faults;
     Met met;

@@ -1,7 +1,7 @@
-#include "quorient/fdi/accumulating.hpp"
+#include "arrays/accumulating_detector.hpp"
 
 #include "quorient/fdi/fault_monitor.hpp"
-#include "quorient/fdi/make_detector.hpp"
+#include "quorient/fdi/methods.hpp"
 #include "quorient/geometry/layouts.hpp"
 
 #include <gmock/gmock.h>
@@ -75,7 +75,7 @@ private:
     std::mt19937_64 random_;
 };
 
-Assessment assess(Accumulating& detector, const SensorFrame& frame)
+Assessment assess(AccumulatingDetector& detector, const SensorFrame& frame)
 {
     Assessment assessment;
     detector.assess({.identity = identity_of(frame),
@@ -198,7 +198,7 @@ TEST(Accumulating, dates_a_step_by_its_own_size_whatever_small_error_was_there_b
 TEST(Accumulating, does_not_blame_an_axis_that_alone_is_near_its_range)
 {
     Array array(5);
-    auto detector = Accumulating::make({}, array.cluster).value();
+    auto detector = AccumulatingDetector::make({}, array.cluster).value();
     Assessment assessment;
     for (std::uint64_t sequence = 0; sequence < 500; ++sequence) {
         SensorFrame frame = array.frame(sequence, Array::rest);
@@ -225,7 +225,7 @@ Unlike play_unlike(std::uint64_t seed, double bias_deg_s, std::size_t axis)
     const auto turning = [](double t) { return Eigen::Vector3d(3 * std::sin(9 * t), 2 * std::sin(8 * t + 1), 3 * std::cos(10 * t)); };
     DetectorSettings settings{.method = "accumulating"};
     settings.instruments = true;
-    const auto detector = Accumulating::make(settings, array.cluster, {.jitter_along_s = array.jitter_s}).value();
+    const auto detector = AccumulatingDetector::make(settings, array.cluster, {.jitter_along_s = array.jitter_s}).value();
     std::mt19937_64 random(seed + 1000);
     std::normal_distribution<double> normal;
     Assessment assessment;
@@ -261,7 +261,7 @@ Assessment assessment_of(const char* layout, std::initializer_list<std::size_t> 
     Array array(9, layout);
     DetectorSettings settings;
     settings.instruments = true;
-    const auto detector = Accumulating::make(settings, array.cluster).value();
+    const auto detector = AccumulatingDetector::make(settings, array.cluster).value();
     Assessment assessment;
     for (std::uint64_t sequence = 0; sequence <= 300; ++sequence) {
         SensorFrame frame = array.frame(sequence, Array::rest);
@@ -287,7 +287,7 @@ TEST(Accumulating, names_nobody_where_two_instruments_are_wrong_alike)
 
 TEST(Accumulating, says_how_much_is_left_to_detect)
 {
-    auto detector = Accumulating::make({}, Array(1).cluster).value();
+    auto detector = AccumulatingDetector::make({}, Array(1).cluster).value();
     EXPECT_EQ(detector->detectable_remaining(), 1U);
     detector->exclude(0b000000111);
     EXPECT_EQ(detector->detectable_remaining(), 1U);
@@ -299,7 +299,7 @@ TEST(Accumulating, is_what_auto_takes_on_three_triads_and_not_on_two_nor_for_two
 {
     const auto taken = [](const DetectorSettings& settings, const char* layout) {
         const auto made = make_detector(settings, Array(1, layout).cluster).value();
-        return dynamic_cast<const Accumulating*>(made.get()) != nullptr;
+        return dynamic_cast<const AccumulatingDetector*>(made.get()) != nullptr;
     };
     DetectorSettings settings;
     EXPECT_TRUE(taken(settings, "triads-3"));
@@ -372,7 +372,7 @@ TEST(Accumulating, is_silent_among_outliers_with_gated_sums)
 TEST(Accumulating, refuses_what_it_cannot_serve_and_says_why)
 {
     const auto refusal = [](const DetectorSettings& settings, const geometry::SensorCluster& cluster) {
-        const auto made = Accumulating::make(settings, cluster);
+        const auto made = AccumulatingDetector::make(settings, cluster);
         return made ? std::string{} : made.error();
     };
     auto cluster = Array(1).cluster;
@@ -383,15 +383,15 @@ TEST(Accumulating, refuses_what_it_cannot_serve_and_says_why)
     cluster = Array(1).cluster;
     cluster.sigma.setZero();
     EXPECT_THAT(refusal({}, cluster), ::testing::HasSubstr("sigma"));
-    EXPECT_FALSE(Accumulating::make({}, Array(1).cluster, {.jitter_along_s = -1}));
-    EXPECT_FALSE(Accumulating::make({.gated_noise = GatedNoise{.axes_error = -1}}, Array(1).cluster));
+    EXPECT_FALSE(AccumulatingDetector::make({}, Array(1).cluster, {.jitter_along_s = -1}));
+    EXPECT_FALSE(AccumulatingDetector::make({.gated_noise = GatedNoise{.axes_error = -1}}, Array(1).cluster));
     EXPECT_THAT(refusal({.motion_noise = -1}, cluster), ::testing::HasSubstr("motion_noise"));
 }
 
 TEST(Accumulating, states_its_false_alarms_per_hour)
 {
-    EXPECT_DOUBLE_EQ(Accumulating::make({}, Array(1).cluster).value()->false_alarms_per_hour(), 0.1);
-    EXPECT_DOUBLE_EQ(Accumulating::make({.pfa = 1e-6}, Array(1).cluster).value()->false_alarms_per_hour(), 1e-6 * 3600 / interval_s);
+    EXPECT_DOUBLE_EQ(AccumulatingDetector::make({}, Array(1).cluster).value()->false_alarms_per_hour(), 0.1);
+    EXPECT_DOUBLE_EQ(AccumulatingDetector::make({.pfa = 1e-6}, Array(1).cluster).value()->false_alarms_per_hour(), 1e-6 * 3600 / interval_s);
 }
 
 }  // namespace

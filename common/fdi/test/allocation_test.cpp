@@ -1,7 +1,7 @@
 // No method may touch the heap per frame: every allocation of this program is counted.
 
 #include "allocation_count.hpp"
-#include "quorient/fdi/make_detector.hpp"
+#include "quorient/fdi/methods.hpp"
 #include "test_clusters.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "quorient/fdi/axis_health.hpp"
+#include "verdict/axis_health.hpp"
 
 #include "quorient/fdi/fault_monitor.hpp"
 #include "quorient/geometry/layouts.hpp"

@@ -1,6 +1,6 @@
 #include "quorient/fdi/fault_monitor.hpp"
 
-#include "quorient/fdi/make_detector.hpp"
+#include "quorient/fdi/methods.hpp"
 #include "quorient/geometry/layouts.hpp"
 #include "quorient/messages/exclusions.hpp"
 #include "quorient/messages/meaning.hpp"

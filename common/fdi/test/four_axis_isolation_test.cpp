@@ -1,9 +1,9 @@
 // The four-axis methods in the pipeline: quantised motion, a fault at a random time on a random axis, verdicts by the state machine.
 
 #include "coning_model.hpp"
-#include "quorient/fdi/extrapolation.hpp"
+#include "four_axes/extrapolation_detector.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
-#include "quorient/fdi/vector_predictor.hpp"
+#include "four_axes/vector_detector.hpp"
 #include "quorient/geometry/layouts.hpp"
 #include "quorient/messages/meaning.hpp"
 
@@ -370,7 +370,7 @@ TEST(FourAxisIsolation, goes_on_without_error_on_three_axes)
 TEST(FourAxisIsolation, refuses_what_it_cannot_serve_and_says_why)
 {
     const auto refusal = [](const geometry::SensorCluster& cluster) {
-        const auto made = VectorPredictor::make({}, cluster);
+        const auto made = VectorDetector::make({}, cluster);
         return made ? std::string{} : made.error();
     };
     EXPECT_THAT(refusal(geometry::layout("cone-6").value()), ::testing::HasSubstr("4 axes"));
@@ -380,7 +380,7 @@ TEST(FourAxisIsolation, refuses_what_it_cannot_serve_and_says_why)
     auto cluster = geometry::make_cluster(flat).value();
     cluster.quantum.setConstant(quantum);
     EXPECT_THAT(refusal(cluster), ::testing::HasSubstr("one plane"));
-    EXPECT_FALSE(VectorPredictor::make({.tolerance = std::nan("")}, cone_4()));
+    EXPECT_FALSE(VectorDetector::make({.tolerance = std::nan("")}, cone_4()));
 }
 
 }  // namespace

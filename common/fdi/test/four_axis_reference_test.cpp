@@ -1,8 +1,8 @@
 // The four-axis methods against the worked cases and tables of paper 003.
 
 #include "coning_model.hpp"
-#include "quorient/fdi/extrapolation.hpp"
-#include "quorient/fdi/vector_predictor.hpp"
+#include "four_axes/extrapolation_detector.hpp"
+#include "four_axes/vector_detector.hpp"
 #include "quorient/geometry/layouts.hpp"
 #include "reference_cases.hpp"
 
@@ -106,7 +106,7 @@ TEST_P(PaperTables, name_the_second_sensor_with_the_printed_moduli)
     auto cluster = geometry::layout(GetParam().layout).value();
     cluster.quantum.setConstant(quantum);
     const auto modulus = ExtrapolationDetector::make({}, cluster).value();
-    const auto vector = VectorPredictor::make({}, cluster).value();
+    const auto vector = VectorDetector::make({}, cluster).value();
     for (std::uint64_t row = 0; row < 40; ++row) {
         const Eigen::Vector4d z = frame(cluster, 6.0 + 0.1 * static_cast<double>(row), 1.0);
         const Outcome expected = row < 4 ? Outcome::warming_up : Outcome::healthy;

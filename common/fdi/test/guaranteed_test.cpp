@@ -1,4 +1,4 @@
-#include "quorient/fdi/guaranteed.hpp"
+#include "single_frame/guaranteed_detector.hpp"
 
 #include "test_clusters.hpp"
 
@@ -42,7 +42,7 @@ Trial random_trial(const geometry::SensorCluster& cluster, std::size_t faults, R
 void expect_sound(const geometry::SensorCluster& cluster, unsigned max_faults, std::uint64_t seed, int trials)
 {
     Random random(seed);
-    const auto detector = Guaranteed::make(with_bound(1, 10, max_faults), cluster).value();
+    const auto detector = GuaranteedDetector::make(with_bound(1, 10, max_faults), cluster).value();
     int seen = 0;
     for (int k = 0; k < trials; ++k) {
         const Trial trial = random_trial(cluster, random.below(max_faults + 1), random);
@@ -82,7 +82,7 @@ TEST(Guaranteed, is_sound_where_some_axes_left_span_no_space)
 
 TEST(Guaranteed, names_both_faults_of_the_papers_example)
 {
-    const auto detector = Guaranteed::make(with_bound(1, 10), cluster_named("guaranteed-cone")).value();
+    const auto detector = GuaranteedDetector::make(with_bound(1, 10), cluster_named("guaranteed-cone")).value();
     const auto assessment = assess(*detector, {-393.04, 1075.35, -612.73, -593.11, 1254.79, -761.19});
     EXPECT_EQ(assessment.outcome, Outcome::isolated);
     EXPECT_EQ(assessment.isolated, axis_bit(1) | axis_bit(2));
@@ -93,7 +93,7 @@ TEST(Guaranteed, names_both_faults_of_the_papers_example)
 
 TEST(Guaranteed, finds_no_explanation_for_the_example_as_printed)
 {
-    const auto detector = Guaranteed::make(with_bound(1, 10), cluster_named("guaranteed-cone")).value();
+    const auto detector = GuaranteedDetector::make(with_bound(1, 10), cluster_named("guaranteed-cone")).value();
     const auto assessment = assess(*detector, {-393.04, 1085.35, -612.73, -593.11, 1254.79, 761.19});
     EXPECT_EQ(assessment.outcome, Outcome::blind);
     EXPECT_TRUE(detector->empty());
@@ -101,8 +101,8 @@ TEST(Guaranteed, finds_no_explanation_for_the_example_as_printed)
 
 TEST(Guaranteed, finds_the_least_threshold_that_leaves_no_healthy_frame_undecided)
 {
-    const double cone = Guaranteed::make(with_bound(1), cluster_named("guaranteed-cone")).value()->threshold();
-    const double dodecahedron = Guaranteed::make(with_bound(1), cluster_named("dodecahedron")).value()->threshold();
+    const double cone = GuaranteedDetector::make(with_bound(1), cluster_named("guaranteed-cone")).value()->threshold();
+    const double dodecahedron = GuaranteedDetector::make(with_bound(1), cluster_named("dodecahedron")).value()->threshold();
     EXPECT_NEAR(cone, 7, 1e-6);
     EXPECT_NEAR(dodecahedron, 1 + 2 * std::sqrt(5.0), 1e-6);
 }
@@ -122,8 +122,8 @@ std::size_t undecided_corners(const geometry::SensorCluster& cluster, Detector& 
 TEST(Guaranteed, is_healthy_on_every_corner_of_the_noise_at_its_own_threshold_and_not_below)
 {
     const auto cluster = cluster_named("dodecahedron");
-    const auto own = Guaranteed::make(with_bound(1), cluster).value();
-    const auto tight = Guaranteed::make(with_bound(1, own->threshold() * 0.99), cluster).value();
+    const auto own = GuaranteedDetector::make(with_bound(1), cluster).value();
+    const auto tight = GuaranteedDetector::make(with_bound(1, own->threshold() * 0.99), cluster).value();
     EXPECT_EQ(undecided_corners(cluster, *own), 0U);
     EXPECT_GT(undecided_corners(cluster, *tight), 0U);
 }
@@ -131,7 +131,7 @@ TEST(Guaranteed, is_healthy_on_every_corner_of_the_noise_at_its_own_threshold_an
 TEST(Guaranteed, is_blind_to_none_but_three_large_faults)
 {
     const auto cluster = cluster_named("dodecahedron");
-    const auto detector = Guaranteed::make(with_bound(1, 10), cluster).value();
+    const auto detector = GuaranteedDetector::make(with_bound(1, 10), cluster).value();
     EXPECT_EQ(assess(*detector, measure(cluster, {1, 2, 3}, {{0, 50}, {1, 90}})).outcome, Outcome::isolated);
     EXPECT_EQ(assess(*detector, measure(cluster, {1, 2, 3}, {{0, 50}, {1, 90}, {4, 170}})).outcome, Outcome::blind);
 }
@@ -139,7 +139,7 @@ TEST(Guaranteed, is_blind_to_none_but_three_large_faults)
 TEST(Guaranteed, lists_the_sets_where_a_fault_can_be_explained_in_several_ways)
 {
     const auto cluster = cluster_named("dodecahedron");
-    const auto detector = Guaranteed::make(with_bound(1, 10), cluster).value();
+    const auto detector = GuaranteedDetector::make(with_bound(1, 10), cluster).value();
     Random random(8);
     int ambiguous = 0;
     for (int k = 0; k < 2000; ++k) {
@@ -158,7 +158,7 @@ TEST(Guaranteed, lists_the_sets_where_a_fault_can_be_explained_in_several_ways)
 TEST(Guaranteed, goes_on_with_fewer_assumed_faults_after_exclusions)
 {
     const auto cluster = cluster_named("dodecahedron");
-    const auto detector = Guaranteed::make(with_bound(1, 10), cluster).value();
+    const auto detector = GuaranteedDetector::make(with_bound(1, 10), cluster).value();
     detector->exclude(axis_bit(0));
     const auto second = assess(*detector, measure(cluster, {1, 2, 3}, {{0, 1e9}, {3, 60}}));
     EXPECT_EQ(second.outcome, Outcome::isolated);
@@ -172,7 +172,7 @@ TEST(Guaranteed, goes_on_with_fewer_assumed_faults_after_exclusions)
 TEST(Guaranteed, has_no_interval_where_the_axes_left_do_not_reach)
 {
     // Without both x axes of two aligned triads nothing tells the x component; without one, the other bounds it.
-    const auto detector = Guaranteed::make(with_bound(1, 10), cluster_named("triads-2")).value();
+    const auto detector = GuaranteedDetector::make(with_bound(1, 10), cluster_named("triads-2")).value();
     assess(*detector, measure(cluster_named("triads-2"), {1, 2, 3}));
     std::size_t both_x = 0;
     while (detector->set(both_x) != (axis_bit(0) | axis_bit(3))) ++both_x;
@@ -184,7 +184,7 @@ TEST(Guaranteed, has_no_interval_where_the_axes_left_do_not_reach)
 TEST(Guaranteed, refuses_what_it_cannot_serve_and_says_why)
 {
     const auto refusal = [](const DetectorSettings& settings, const std::string& layout) {
-        const auto made = Guaranteed::make(settings, cluster_named(layout));
+        const auto made = GuaranteedDetector::make(settings, cluster_named(layout));
         return made ? std::string() : made.error();
     };
     EXPECT_NE(refusal(with_bound(1, 10, 2), "cone-5").find("6 to 8 axes"), std::string::npos);

@@ -1,12 +1,12 @@
 // What all single-frame methods have in common, and what each answers.
 
-#include "quorient/fdi/invariants.hpp"
-#include "quorient/fdi/likelihood_ratio.hpp"
-#include "quorient/fdi/make_detector.hpp"
-#include "quorient/fdi/mean.hpp"
+#include "single_frame/invariants_detector.hpp"
+#include "single_frame/glt_detector.hpp"
+#include "quorient/fdi/methods.hpp"
+#include "single_frame/mean_detector.hpp"
 #include "quorient/fdi/noise.hpp"
-#include "quorient/fdi/parity_set.hpp"
-#include "quorient/fdi/voting.hpp"
+#include "single_frame/parity_set_detector.hpp"
+#include "single_frame/voting_detector.hpp"
 #include "test_clusters.hpp"
 
 #include <gtest/gtest.h>
@@ -217,30 +217,30 @@ TEST(Noise, quantiles_are_those_of_the_papers_thresholds)
     EXPECT_NEAR(normal_quantile(1e-3 / 12), 3.7648, 5e-5);
 }
 
-TEST(LikelihoodRatio, is_ambiguous_among_all_four_axes)
+TEST(GltDetector, is_ambiguous_among_all_four_axes)
 {
     const auto cluster = cluster_named("cone-4");
-    const auto detector = LikelihoodRatio::make(settings_for("glt"), cluster).value();
+    const auto detector = GltDetector::make(settings_for("glt"), cluster).value();
     const auto assessment = assess(*detector, measure(cluster, {1, 2, 3}, {{2, 100}}));
     EXPECT_EQ(assessment.outcome, Outcome::ambiguous);
     EXPECT_EQ(assessment.candidate_count, 4);
 }
 
-TEST(LikelihoodRatio, is_blind_to_two_faults_that_no_single_one_explains)
+TEST(GltDetector, is_blind_to_two_faults_that_no_single_one_explains)
 {
     const auto cluster = cluster_named("dodecahedron");
-    const auto detector = LikelihoodRatio::make(settings_for("glt"), cluster).value();
+    const auto detector = GltDetector::make(settings_for("glt"), cluster).value();
     EXPECT_EQ(assess(*detector, measure(cluster, {1, 2, 3}, {{2, 100}, {5, 150}})).outcome, Outcome::blind);
     EXPECT_EQ(assess(*detector, measure(cluster, {1, 2, 3}, {{2, 100}})).outcome, Outcome::isolated);
 }
 
-TEST(LikelihoodRatio, raises_false_alarms_as_often_as_it_was_told)
+TEST(GltDetector, raises_false_alarms_as_often_as_it_was_told)
 {
     auto settings = settings_for("glt");
     settings.pfa = 0.01;
     const auto cluster = cluster_named("dodecahedron");
-    const auto by_residual = LikelihoodRatio::make(settings, cluster).value();
-    const auto by_parity = ParitySet::make(settings, cluster).value();
+    const auto by_residual = GltDetector::make(settings, cluster).value();
+    const auto by_parity = ParitySetDetector::make(settings, cluster).value();
     Random random(14);
     int alarms = 0;
     constexpr int frames = 40'000;
@@ -261,7 +261,7 @@ TEST(Mean, leaves_two_axes_out_and_not_a_third)
     auto settings = settings_for("mean");
     settings.tolerance = 1;
     const auto cluster = cluster_named("octahedron-8");
-    const auto detector = Mean::make(settings, cluster).value();
+    const auto detector = MeanDetector::make(settings, cluster).value();
     const auto two = assess(*detector, measure(cluster, {1, 2, 3}, {{1, 50}, {4, -90}}));
     EXPECT_EQ(two.outcome, Outcome::isolated);
     EXPECT_EQ(two.isolated, axis_bit(1) | axis_bit(4));
@@ -274,9 +274,9 @@ TEST(Invariants, relaxed_take_the_best_quadruple_where_the_strict_rule_refuses)
     const std::vector<double> z{-393.04, 1075.35, -612.73, -593.11, 1254.79, -761.19};
     auto settings = settings_for("invariants");
     settings.tolerance = 3;
-    const auto strict = Invariants::make(settings, cluster_named("guaranteed-cone")).value();
+    const auto strict = InvariantsDetector::make(settings, cluster_named("guaranteed-cone")).value();
     settings.relaxed = true;
-    const auto relaxed = Invariants::make(settings, cluster_named("guaranteed-cone")).value();
+    const auto relaxed = InvariantsDetector::make(settings, cluster_named("guaranteed-cone")).value();
     EXPECT_EQ(assess(*strict, z).outcome, Outcome::refused);
     EXPECT_EQ(assess(*relaxed, z).isolated, axis_bit(1) | axis_bit(2));
 }
@@ -287,7 +287,7 @@ TEST(Invariants, relaxed_refuse_where_even_the_best_quadruple_fails)
     settings.tolerance = 1;
     settings.relaxed = true;
     const auto cluster = cluster_named("dodecahedron");
-    const auto detector = Invariants::make(settings, cluster).value();
+    const auto detector = InvariantsDetector::make(settings, cluster).value();
     const auto assessment = assess(*detector, measure(cluster, {1, 2, 3}, {{0, 50}, {1, 90}, {4, 170}}));
     EXPECT_EQ(assessment.outcome, Outcome::refused);
     EXPECT_EQ(assessment.isolated, 0U);
@@ -298,7 +298,7 @@ TEST(Voting, names_two_of_eight_axes_by_the_general_counts)
     auto settings = settings_for("voting");
     settings.tolerance = 1;
     const auto cluster = cluster_named("octahedron-8");
-    const auto detector = Voting::make(settings, cluster).value();
+    const auto detector = VotingDetector::make(settings, cluster).value();
     EXPECT_EQ(detector->pair_count(), 56U * 55U / 2U);
     const auto assessment = assess(*detector, measure(cluster, {1, 2, 3}, {{1, 50}, {4, -90}}));
     EXPECT_EQ(assessment.isolated, axis_bit(1) | axis_bit(4));

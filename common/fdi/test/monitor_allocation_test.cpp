@@ -3,7 +3,7 @@
 #include "allocation_count.hpp"
 #include "observer_scene.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
-#include "quorient/fdi/make_detector.hpp"
+#include "quorient/fdi/methods.hpp"
 #include "quorient/geometry/layouts.hpp"
 
 #include <gtest/gtest.h>

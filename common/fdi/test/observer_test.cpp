@@ -1,6 +1,6 @@
 #include "observer_scene.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
-#include "quorient/fdi/observer_design.hpp"
+#include "observers/observer_design.hpp"
 #include "quorient/messages/meaning.hpp"
 
 #include <gtest/gtest.h>

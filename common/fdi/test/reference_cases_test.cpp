@@ -1,12 +1,12 @@
 #include "reference_cases.hpp"
 
-#include "quorient/fdi/guaranteed.hpp"
-#include "quorient/fdi/invariants.hpp"
-#include "quorient/fdi/likelihood_ratio.hpp"
-#include "quorient/fdi/mean.hpp"
-#include "quorient/fdi/parity_set.hpp"
-#include "quorient/fdi/subset_likelihood.hpp"
-#include "quorient/fdi/voting.hpp"
+#include "single_frame/guaranteed_detector.hpp"
+#include "single_frame/invariants_detector.hpp"
+#include "single_frame/glt_detector.hpp"
+#include "single_frame/mean_detector.hpp"
+#include "single_frame/parity_set_detector.hpp"
+#include "single_frame/subset_detector.hpp"
+#include "single_frame/voting_detector.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,16 +15,16 @@ namespace {
 
 using nlohmann::json;
 
-std::unique_ptr<Guaranteed> guaranteed_for(const json& input, double threshold)
+std::unique_ptr<GuaranteedDetector> guaranteed_for(const json& input, double threshold)
 {
     DetectorSettings settings;
     settings.bound = input["sigma"].get<double>();
     settings.threshold = threshold;
     settings.max_faults = 2;
-    return Guaranteed::make(settings, cluster_of(input["H"])).value();
+    return GuaranteedDetector::make(settings, cluster_of(input["H"])).value();
 }
 
-void expect_interval(const Guaranteed::Interval& interval, double lower, double upper, double tolerance)
+void expect_interval(const GuaranteedDetector::Interval& interval, double lower, double upper, double tolerance)
 {
     EXPECT_NEAR(interval.lower, lower, tolerance);
     EXPECT_NEAR(interval.upper, upper, tolerance);
@@ -124,7 +124,7 @@ void expect_sums_of_squares(const json& entry, const geometry::SensorCluster& cl
     settings.sigma = 1;
     settings.pfa = 0.999999;  // every frame goes through the subsets
     settings.max_faults = 2;
-    const auto detector = SubsetLikelihood::make(settings, cluster).value();
+    const auto detector = SubsetDetector::make(settings, cluster).value();
     const auto assessment = assess(*detector, z);
     EXPECT_NEAR(assessment.statistic, entry["expected"]["SSE0"].get<double>(), tolerance);
     if (assessment.outcome == Outcome::healthy) return;
@@ -148,7 +148,7 @@ TEST(ReferenceCases, invariants_voting_and_mean_decide_as_the_independent_comput
         const auto cluster = cluster_of(input["H"]);
         const auto z = input["z"].get<std::vector<double>>();
 
-        const auto invariants = Invariants::make(with_tolerance(input["T_invariant_unit_norm"].get<double>()), cluster).value();
+        const auto invariants = InvariantsDetector::make(with_tolerance(input["T_invariant_unit_norm"].get<double>()), cluster).value();
         expect_decision(expected["invariants"], assess(*invariants, z));
         const auto passed = invariants->passed();
         EXPECT_EQ(std::count(passed.begin(), passed.end(), 1), expected["n_pass_invariants"].get<int>());
@@ -156,11 +156,11 @@ TEST(ReferenceCases, invariants_voting_and_mean_decide_as_the_independent_comput
             EXPECT_NEAR(invariants->values()[k], expected["abs_invariants_lexicographic_quads"][k].get<double>(),
                         entry["tol"]["abs"].get<double>());
 
-        const auto voting = Voting::make(with_tolerance(input["T_vote_vectornorm"].get<double>()), cluster).value();
+        const auto voting = VotingDetector::make(with_tolerance(input["T_vote_vectornorm"].get<double>()), cluster).value();
         expect_decision(expected["voting"], assess(*voting, z));
         EXPECT_EQ(voting->passed_count(), expected["n_pass_voting"].get<std::size_t>());
 
-        const auto mean = Mean::make(with_tolerance(input["T_mean_sqrtSSE"].get<double>()), cluster).value();
+        const auto mean = MeanDetector::make(with_tolerance(input["T_mean_sqrtSSE"].get<double>()), cluster).value();
         const auto assessment = assess(*mean, z);
         if (expected["mean_unresolved_after_2"].get<bool>()) EXPECT_EQ(assessment.outcome, Outcome::refused);
         else expect_decision(expected["mean"], assessment);
@@ -186,7 +186,7 @@ TEST(ReferenceCases, one_likelihood_ratio_core_gives_potter_suman_and_glr)
         settings.sigma = sigma;
         settings.pfa = 1e-3;
 
-        const auto detector = LikelihoodRatio::make(settings, cluster).value();
+        const auto detector = GltDetector::make(settings, cluster).value();
         const auto assessment = assess(*detector, m);
         const std::size_t best = expected["isolated_1based"].get<std::size_t>() - 1;
         EXPECT_NEAR(assessment.statistic * sigma * sigma, expected["sse"].get<double>(), tolerance);
@@ -197,7 +197,7 @@ TEST(ReferenceCases, one_likelihood_ratio_core_gives_potter_suman_and_glr)
             EXPECT_NEAR(detector->parity(axis), expected["p_n"][axis].get<double>(), tolerance);
         }
 
-        const auto minimal = ParitySet::make(settings, cluster).value();
+        const auto minimal = ParitySetDetector::make(settings, cluster).value();
         const auto same = assess(*minimal, m);
         EXPECT_NEAR(minimal->parity().squaredNorm(), expected["sse"].get<double>(), tolerance);
         EXPECT_EQ(same.isolated, axis_bit(best));

@@ -1,4 +1,4 @@
-#include "quorient/fdi/subset_likelihood.hpp"
+#include "single_frame/subset_detector.hpp"
 
 #include "test_clusters.hpp"
 
@@ -29,7 +29,7 @@ Rates rates(const std::string& layout, const DetectorSettings& settings, std::si
 {
     constexpr int trials = 20'000;
     const auto cluster = cluster_named(layout);
-    const auto detector = SubsetLikelihood::make(settings, cluster).value();
+    const auto detector = SubsetDetector::make(settings, cluster).value();
     Random random(seed);
     int correct = 0;
     int wrong = 0;
@@ -47,7 +47,7 @@ Rates rates(const std::string& layout, const DetectorSettings& settings, std::si
 }
 
 // The row "ML sequential" of methods.md: correct %, dodecahedron. Four standard errors of 6000 and 20000 trials together are 2.8.
-TEST(SubsetLikelihood, reaches_the_sequential_likelihood_decision_at_margin_0)
+TEST(SubsetDetector, reaches_the_sequential_likelihood_decision_at_margin_0)
 {
     EXPECT_GT(rates("dodecahedron", with(0), 0, 0, 0, 1).correct, 99.9 - 0.3);
     EXPECT_GT(rates("dodecahedron", with(0), 1, 5, 30, 2).correct, 96.3 - 1.1);
@@ -56,7 +56,7 @@ TEST(SubsetLikelihood, reaches_the_sequential_likelihood_decision_at_margin_0)
     EXPECT_GT(rates("dodecahedron", with(0), 2, 20, 200, 5).correct, 96.1 - 1.2);
 }
 
-TEST(SubsetLikelihood, would_rather_be_ambiguous_than_wrong_at_margin_9)
+TEST(SubsetDetector, would_rather_be_ambiguous_than_wrong_at_margin_9)
 {
     const Rates guess = rates("dodecahedron", with(0), 2, 20, 200, 6);
     const Rates careful = rates("dodecahedron", with(9), 2, 20, 200, 6);
@@ -65,7 +65,7 @@ TEST(SubsetLikelihood, would_rather_be_ambiguous_than_wrong_at_margin_9)
     EXPECT_GT(careful.correct, 86.1 - 2);
 }
 
-TEST(SubsetLikelihood, with_doubt_hardly_ever_takes_two_small_faults_for_one)
+TEST(SubsetDetector, with_doubt_hardly_ever_takes_two_small_faults_for_one)
 {
     auto doubting = with(9);
     doubting.doubt = 0.6;
@@ -73,7 +73,7 @@ TEST(SubsetLikelihood, with_doubt_hardly_ever_takes_two_small_faults_for_one)
     EXPECT_LT(rates("dodecahedron", doubting, 2, 5, 30, 7).wrong, 0.25);
 }
 
-TEST(SubsetLikelihood, doubts_a_small_fault_and_names_a_large_one_that_leaves_as_much)
+TEST(SubsetDetector, doubts_a_small_fault_and_names_a_large_one_that_leaves_as_much)
 {
     auto doubting = with(9);
     doubting.doubt = 0.5;
@@ -99,13 +99,13 @@ double refitted(const geometry::SensorCluster& cluster, const std::vector<double
     return (values - rows * rows.colPivHouseholderQr().solve(values)).squaredNorm();
 }
 
-TEST(SubsetLikelihood, scores_every_set_as_a_fit_without_it)
+TEST(SubsetDetector, scores_every_set_as_a_fit_without_it)
 {
     Random random(8);
     for (const auto* layout : {"cone-5", "dodecahedron", "octahedron-8", "cone-12"}) {
         const auto cluster = cluster_named(layout);
         const unsigned max_faults = cluster.size() == 5 ? 1 : 3;
-        const auto detector = SubsetLikelihood::make(with(0, max_faults), cluster).value();
+        const auto detector = SubsetDetector::make(with(0, max_faults), cluster).value();
         for (int k = 0; k < 50; ++k) {
             const auto z = measure(cluster, random.body(100), {{random.below(cluster.size()), 30}, {random.below(cluster.size()), 50}});
             assess(*detector, z);
@@ -115,87 +115,87 @@ TEST(SubsetLikelihood, scores_every_set_as_a_fit_without_it)
     }
 }
 
-TEST(SubsetLikelihood, names_all_four_axes_where_parity_cannot_isolate)
+TEST(SubsetDetector, names_all_four_axes_where_parity_cannot_isolate)
 {
     const auto cluster = cluster_named("cone-4");
-    const auto detector = SubsetLikelihood::make(with(0, 1), cluster).value();
+    const auto detector = SubsetDetector::make(with(0, 1), cluster).value();
     const auto assessment = assess(*detector, measure(cluster, {1, 2, 3}, {{1, 50}}));
     EXPECT_EQ(assessment.outcome, Outcome::ambiguous);
     EXPECT_EQ(assessment.candidate_count, 4);
     EXPECT_EQ(assess(*detector, measure(cluster, {1, 2, 3})).outcome, Outcome::healthy);
 }
 
-TEST(SubsetLikelihood, names_both_of_two_aligned_axes)
+TEST(SubsetDetector, names_both_of_two_aligned_axes)
 {
     const auto cluster = cluster_named("triads-2");
-    const auto detector = SubsetLikelihood::make(with(0, 1), cluster).value();
+    const auto detector = SubsetDetector::make(with(0, 1), cluster).value();
     const auto assessment = assess(*detector, measure(cluster, {1, 2, 3}, {{1, 50}}));
     EXPECT_EQ(assessment.outcome, Outcome::ambiguous);
     ASSERT_EQ(assessment.candidate_count, 2);
     EXPECT_EQ(assessment.candidate[0] | assessment.candidate[1], axis_bit(1) | axis_bit(4));
 }
 
-TEST(SubsetLikelihood, isolates_an_instrument_of_three_whole_ones)
+TEST(SubsetDetector, isolates_an_instrument_of_three_whole_ones)
 {
     auto settings = with(9, 1);
     settings.instruments = true;
     const auto three = cluster_named("triads-3");
-    const auto detector = SubsetLikelihood::make(settings, three).value();
+    const auto detector = SubsetDetector::make(settings, three).value();
     const auto assessment = assess(*detector, measure(three, {1, 2, 3}, {{3, 20}, {4, -30}, {5, 15}}));
     EXPECT_EQ(assessment.outcome, Outcome::isolated);
     EXPECT_EQ(assessment.isolated, AxisMask{0b111000});
 
     const auto two = cluster_named("triads-2");
-    const auto between_two = SubsetLikelihood::make(settings, two).value();
+    const auto between_two = SubsetDetector::make(settings, two).value();
     EXPECT_EQ(assess(*between_two, measure(two, {1, 2, 3}, {{3, 20}, {4, -30}, {5, 15}})).outcome, Outcome::ambiguous);
 }
 
-TEST(SubsetLikelihood, isolates_two_of_eight_instruments)
+TEST(SubsetDetector, isolates_two_of_eight_instruments)
 {
     auto settings = with(9, 2);
     settings.instruments = true;
     const auto cluster = cluster_named("triads-8");
-    const auto detector = SubsetLikelihood::make(settings, cluster).value();
+    const auto detector = SubsetDetector::make(settings, cluster).value();
     const auto assessment = assess(*detector, measure(cluster, {1, 2, 3}, {{4, 40}, {21, 40}}));
     EXPECT_EQ(assessment.outcome, Outcome::isolated);
     EXPECT_EQ(assessment.isolated, AxisMask{0b111} << 3 | AxisMask{0b111} << 21);
 }
 
-TEST(SubsetLikelihood, is_blind_to_more_faults_than_it_looks_for)
+TEST(SubsetDetector, is_blind_to_more_faults_than_it_looks_for)
 {
     const auto cluster = cluster_named("octahedron-8");
-    const auto detector = SubsetLikelihood::make(with(9, 1), cluster).value();
+    const auto detector = SubsetDetector::make(with(9, 1), cluster).value();
     EXPECT_EQ(assess(*detector, measure(cluster, {1, 2, 3}, {{0, 50}})).outcome, Outcome::isolated);
     EXPECT_EQ(assess(*detector, measure(cluster, {1, 2, 3}, {{0, 50}, {2, 70}})).outcome, Outcome::blind);
 }
 
-TEST(SubsetLikelihood, isolates_a_fault_a_hundred_million_times_the_noise)
+TEST(SubsetDetector, isolates_a_fault_a_hundred_million_times_the_noise)
 {
     const auto cluster = cluster_named("dodecahedron");
-    const auto detector = SubsetLikelihood::make(with(9), cluster).value();
+    const auto detector = SubsetDetector::make(with(9), cluster).value();
     const auto assessment = assess(*detector, measure(cluster, {1e3, 2e3, 3e3}, {{4, 1e8}}));
     EXPECT_EQ(assessment.isolated, axis_bit(4));
     EXPECT_EQ(assessment.outcome, Outcome::isolated);
 }
 
-TEST(SubsetLikelihood, weighs_each_axis_by_its_own_noise)
+TEST(SubsetDetector, weighs_each_axis_by_its_own_noise)
 {
     auto cluster = cluster_named("dodecahedron");
     cluster.sigma = geometry::AxisVector::Ones(6);
     cluster.sigma(3) = 20;
     DetectorSettings settings;
     settings.pfa = 1e-3;
-    const auto detector = SubsetLikelihood::make(settings, cluster).value();
+    const auto detector = SubsetDetector::make(settings, cluster).value();
     EXPECT_EQ(assess(*detector, measure(cluster, {1, 2, 3}, {{3, 40}})).outcome, Outcome::healthy);
     const auto other = assess(*detector, measure(cluster, {1, 2, 3}, {{2, 40}}));
     EXPECT_EQ(other.outcome, Outcome::isolated);
     EXPECT_EQ(other.isolated, axis_bit(2));
 }
 
-TEST(SubsetLikelihood, refuses_what_it_cannot_serve_and_says_why)
+TEST(SubsetDetector, refuses_what_it_cannot_serve_and_says_why)
 {
     const auto refusal = [](const DetectorSettings& settings, const std::string& layout) {
-        const auto made = SubsetLikelihood::make(settings, cluster_named(layout));
+        const auto made = SubsetDetector::make(settings, cluster_named(layout));
         return made ? std::string() : made.error();
     };
     EXPECT_NE(refusal(with(9, 1), "orthogonal-3").find("at least 4 axes"), std::string::npos);

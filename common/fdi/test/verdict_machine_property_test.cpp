@@ -1,7 +1,7 @@
 // Rule-based random tests: random sequences of everything that can happen to a verdict machine, its promises checked after each event
 // against the events themselves.
 
-#include "quorient/fdi/verdict_machine.hpp"
+#include "verdict/verdict_machine.hpp"
 #include "quorient/messages/exclusions.hpp"
 #include "quorient/messages/meaning.hpp"
 

@@ -1,4 +1,4 @@
-#include "quorient/fdi/verdict_machine.hpp"
+#include "verdict/verdict_machine.hpp"
 #include "quorient/messages/exclusions.hpp"
 #include "quorient/messages/meaning.hpp"
 

@@ -1,7 +1,7 @@
 #include "parse_detector.hpp"
 
 #include "quorient/fdi/fault_monitor.hpp"
-#include "quorient/fdi/make_detector.hpp"
+#include "quorient/fdi/methods.hpp"
 #include "quorient/fdi/observer_detector.hpp"
 #include "quorient/system/plant.hpp"
 

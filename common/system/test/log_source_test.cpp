@@ -27,7 +27,7 @@ protected:
         cluster.description.axis_count = 9;
         cluster.gain.fill(1);
         cluster.motion_level = 1.5;
-        cluster.gated = {.along_s = 1e-3, .across_s = 2e-4, .axes = 3e-3, .rate = 4e-4};
+        cluster.gated = {.jitter_along_s = 1e-3, .jitter_across_s = 2e-4, .axes_error = 3e-3, .rate_error = 4e-4};
         for (std::size_t axis = 0; axis < 9; ++axis) {
             cluster.description.axis[axis][axis % 3] = 1;
             cluster.description.sigma[axis] = 1e-5;

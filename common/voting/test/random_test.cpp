@@ -712,7 +712,7 @@ TEST(RandomEvents, are_always_recovered_from_when_the_cause_ends)
             if (!world.watch().last()) return world.problem();
             const VotedAttitude& last = *world.watch().last();
             world.watch().expect(identity_of(last) == world.newest(), "the output has stopped");
-            level_of(world.watch().expect(last) == VoteLevel::full, "not FULL again");
+            world.watch().expect(level_of(last) == VoteLevel::full, "not FULL again");
             world.watch().expect(last.excluded_mask == 0, "a lane is still excluded");
             return world.problem();
         });

@@ -1,7 +1,7 @@
 // A consumer of the installed package: isolates a biased gyro of the dodecahedron and prints its axis.
 
 #include <quorient/rotation/quaternion.hpp>
-#include <quorient/fdi/make_detector.hpp>
+#include <quorient/fdi/methods.hpp>
 #include <quorient/geometry/layouts.hpp>
 #include <quorient/recording/reader.hpp>
 #include <quorient/simulation/faults.hpp>

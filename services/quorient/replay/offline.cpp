@@ -37,9 +37,9 @@ Offline::Offline(system::System system, evaluation::RunObserver& observer, repor
     for (const auto& voter : system_.voters) voters_.push_back(std::make_unique<voter::VoterService>(voter, *bus_, loop_));
     for (const auto& lane : system_.lanes) {
         if (!system_.has_attitude()) break;
-        integrators_.push_back(std::make_unique<integrator::AttitudeIntegrator>(lane.integrator, *bus_, loop_));
+        integrators_.push_back(std::make_unique<integrator::IntegratorService>(lane.integrator, *bus_, loop_));
     }
-    for (const auto& lane : system_.lanes) detectors_.push_back(std::make_unique<detector::ParityFdi>(lane.detector, *bus_, loop_));
+    for (const auto& lane : system_.lanes) detectors_.push_back(std::make_unique<detector::DetectorService>(lane.detector, *bus_, loop_));
 }
 
 void Offline::observe(evaluation::RunObserver& observer, report::ReplayReport& report)

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "attitude_integrator.hpp"
-#include "parity_fdi.hpp"
+#include "integrator_service.hpp"
+#include "detector_service.hpp"
 #include "quorient/bus/local_bus.hpp"
 #include "quorient/runtime/event_loop.hpp"
 #include "report/replay_report.hpp"
 #include "quorient/evaluation/run_observer.hpp"
 #include "sensor_publisher.hpp"
-#include "voter.hpp"
+#include "voter_service.hpp"
 
 #include <atomic>
 #include <memory>
@@ -41,8 +41,8 @@ private:
     std::unique_ptr<bus::Bus> bus_;
     runtime::EventLoop loop_;
     std::vector<std::unique_ptr<voter::VoterService>> voters_;
-    std::vector<std::unique_ptr<integrator::AttitudeIntegrator>> integrators_;
-    std::vector<std::unique_ptr<detector::ParityFdi>> detectors_;
+    std::vector<std::unique_ptr<integrator::IntegratorService>> integrators_;
+    std::vector<std::unique_ptr<detector::DetectorService>> detectors_;
     ServiceStatus intake_;
     std::string remarks_;
 };

@@ -1,4 +1,4 @@
-#include "svg_plot.hpp"
+#include "cli/svg_plot.hpp"
 #include "run_verb.hpp"
 #include "verbs.hpp"
 

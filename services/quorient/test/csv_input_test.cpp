@@ -1,4 +1,4 @@
-#include "csv_input.hpp"
+#include "cli/csv_input.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,15 +1,15 @@
 #include "assess_methods.hpp"
 
-#include "quorient/fdi/extrapolation.hpp"
-#include "quorient/fdi/guaranteed.hpp"
-#include "quorient/fdi/invariants.hpp"
-#include "quorient/fdi/likelihood_ratio.hpp"
-#include "quorient/fdi/make_detector.hpp"
-#include "quorient/fdi/mean.hpp"
-#include "quorient/fdi/parity_set.hpp"
-#include "quorient/fdi/subset_likelihood.hpp"
-#include "quorient/fdi/vector_predictor.hpp"
-#include "quorient/fdi/voting.hpp"
+#include "four_axes/extrapolation_detector.hpp"
+#include "single_frame/guaranteed_detector.hpp"
+#include "single_frame/invariants_detector.hpp"
+#include "single_frame/glt_detector.hpp"
+#include "quorient/fdi/methods.hpp"
+#include "single_frame/mean_detector.hpp"
+#include "single_frame/parity_set_detector.hpp"
+#include "single_frame/subset_detector.hpp"
+#include "four_axes/vector_detector.hpp"
+#include "single_frame/voting_detector.hpp"
 
 #include <algorithm>
 
@@ -21,20 +21,20 @@ using fdi::Assessment;
 
 constexpr std::size_t shown_scores = 5;
 
-Json interval_json(const fdi::Guaranteed::Interval& interval)
+Json interval_json(const fdi::GuaranteedDetector::Interval& interval)
 {
     return Json::array({interval.lower, interval.upper});
 }
 
 /// Where every set is empty nothing is estimated: nulls in the shape of the figures.
-void add_guaranteed_axes(const fdi::Guaranteed& method, const Assessment& assessment, std::size_t axes, Json& row)
+void add_guaranteed_axes(const fdi::GuaranteedDetector& method, const Assessment& assessment, std::size_t axes, Json& row)
 {
     Json interval = Json::array();
     Json estimate = Json::array();
     Json half_width = Json::array();
     Json decision = Json::array();
     for (std::size_t axis = 0; axis < axes; ++axis) {
-        const auto hull = method.empty() ? fdi::Guaranteed::Interval{NAN, NAN} : method.interval(axis);
+        const auto hull = method.empty() ? fdi::GuaranteedDetector::Interval{NAN, NAN} : method.interval(axis);
         interval.push_back(interval_json(hull));
         estimate.push_back(0.5 * (hull.lower + hull.upper));
         half_width.push_back(method.empty() ? NAN : assessment.bound[axis]);
@@ -47,7 +47,7 @@ void add_guaranteed_axes(const fdi::Guaranteed& method, const Assessment& assess
     row["decision"] = std::move(decision);
 }
 
-void add_guaranteed(const fdi::Guaranteed& method, const Assessment& assessment, std::size_t axes,
+void add_guaranteed(const fdi::GuaranteedDetector& method, const Assessment& assessment, std::size_t axes,
                     const std::optional<Eigen::Vector3d>& direction, Json& row)
 {
     Json sets = Json::array();
@@ -60,7 +60,7 @@ void add_guaranteed(const fdi::Guaranteed& method, const Assessment& assessment,
     if (direction) row["direction_interval"] = interval_json(method.interval_along(*direction));
 }
 
-void add_invariants(const fdi::Invariants& method, Json& row)
+void add_invariants(const fdi::InvariantsDetector& method, Json& row)
 {
     row["values"] = method.values();
     Json passed = Json::array();
@@ -69,7 +69,7 @@ void add_invariants(const fdi::Invariants& method, Json& row)
     row["passed"] = std::move(passed);
 }
 
-void add_likelihood_ratio(const fdi::LikelihoodRatio& method, std::size_t axes, Json& row)
+void add_likelihood_ratio(const fdi::GltDetector& method, std::size_t axes, Json& row)
 {
     Json per_axis = Json::array();
     Json parity = Json::array();
@@ -84,7 +84,7 @@ void add_likelihood_ratio(const fdi::LikelihoodRatio& method, std::size_t axes, 
     row["parity"] = std::move(parity);
 }
 
-void add_subset(const fdi::SubsetLikelihood& method, Json& row)
+void add_subset(const fdi::SubsetDetector& method, Json& row)
 {
     Json scores = Json::array();
     for (const auto& score : method.best().first(std::min(shown_scores, method.best().size())))
@@ -104,9 +104,9 @@ void add_extrapolation(const fdi::ExtrapolationDetector& method, Json& row)
     row["fallback"] = prediction ? Json(std::string(fdi::name(prediction->fallback))) : Json(nullptr);
 }
 
-void add_vector(const fdi::VectorPredictor& method, Json& row)
+void add_vector(const fdi::VectorDetector& method, Json& row)
 {
-    const fdi::VectorPredictor::Prediction* prediction = method.prediction();
+    const fdi::VectorDetector::Prediction* prediction = method.prediction();
     row["predicted"] = prediction ? vector_json(prediction->body) : Json(nullptr);
     row["triad_distance"] = prediction ? Json(method.triad_distance()) : Json(nullptr);
     row["working_triad"] = prediction ? axes_json(method.triad(method.working_triad()).mask()) : Json(nullptr);
@@ -148,31 +148,31 @@ tl::expected<Assessor, std::string> make_assessor(const fdi::DetectorSettings& s
     const std::size_t axes = cluster.size();
     Assessor assessor{std::move(*made), [](const Assessment&, Json&) {}};
     if (settings.method == "guaranteed")
-        assessor.add_fields = [&method = as<fdi::Guaranteed>(detector), axes, direction](const Assessment& assessment, Json& row) {
+        assessor.add_fields = [&method = as<fdi::GuaranteedDetector>(detector), axes, direction](const Assessment& assessment, Json& row) {
             add_guaranteed(method, assessment, axes, direction, row);
         };
     else if (settings.method == "invariants")
-        assessor.add_fields = [&method = as<fdi::Invariants>(detector)](const Assessment&, Json& row) { add_invariants(method, row); };
+        assessor.add_fields = [&method = as<fdi::InvariantsDetector>(detector)](const Assessment&, Json& row) { add_invariants(method, row); };
     else if (settings.method == "voting")
-        assessor.add_fields = [&method = as<fdi::Voting>(detector)](const Assessment&, Json& row) {
+        assessor.add_fields = [&method = as<fdi::VotingDetector>(detector)](const Assessment&, Json& row) {
             row["passed_count"] = method.passed_count();
         };
     else if (settings.method == "glt")
-        assessor.add_fields = [&method = as<fdi::LikelihoodRatio>(detector), axes](const Assessment&, Json& row) {
+        assessor.add_fields = [&method = as<fdi::GltDetector>(detector), axes](const Assessment&, Json& row) {
             add_likelihood_ratio(method, axes, row);
         };
     else if (settings.method == "parity-set")
-        assessor.add_fields = [&method = as<fdi::ParitySet>(detector)](const Assessment&, Json& row) {
+        assessor.add_fields = [&method = as<fdi::ParitySetDetector>(detector)](const Assessment&, Json& row) {
             row["parity"] = vector_json(method.parity());
         };
     else if (settings.method == "subset")
-        assessor.add_fields = [&method = as<fdi::SubsetLikelihood>(detector)](const Assessment&, Json& row) { add_subset(method, row); };
+        assessor.add_fields = [&method = as<fdi::SubsetDetector>(detector)](const Assessment&, Json& row) { add_subset(method, row); };
     else if (settings.method == "extrapolation")
         assessor.add_fields = [&method = as<fdi::ExtrapolationDetector>(detector)](const Assessment&, Json& row) {
             add_extrapolation(method, row);
         };
     else if (settings.method == "vector")
-        assessor.add_fields = [&method = as<fdi::VectorPredictor>(detector)](const Assessment&, Json& row) { add_vector(method, row); };
+        assessor.add_fields = [&method = as<fdi::VectorDetector>(detector)](const Assessment&, Json& row) { add_vector(method, row); };
     return assessor;
 }
 

@@ -106,7 +106,7 @@ void add_calibrate(Program& program)
         "Example:\n"
         "  quorient calibrate exp_1/data.bin --out cluster.yaml --plot calibration.svg\n");
     const auto options = std::make_shared<CalibrateOptions>();
-    verb.option("log", options->logs,
+    verb.arguments("log", options->logs,
                      "MIMU4444 binary, Xsens DOT CSV, or CSV as quorient simulate writes it; several of one motion are merged")
         .value_name("LOG ...")
         .required();

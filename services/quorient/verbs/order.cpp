@@ -39,7 +39,7 @@ Order::Order(const FaultCommand& command, bus::Bus& bus, runtime::EventLoop& loo
     : command_(command),
       loop_(loop),
       commands_(bus.advertise(bus::topics::command)),
-      action_of(of_a_frame_(command) == CommandAction::reset_attitude),
+      of_a_frame_(action_of(command) == CommandAction::reset_attitude),
       search_ns_(concerned_role(command.action) == ServiceRole::sensor ? 0 : all_found_ns),
       begin_ns_(loop.clock().steady_ns())
 {

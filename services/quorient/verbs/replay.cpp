@@ -100,7 +100,7 @@ void add_replay(Program& program)
     auto verb = program.verb(
         "replay", "The whole system over a recording on the local bus, as fast as it goes; bit-identical on every run");
     auto options = std::make_shared<ReplayOptions>();
-    verb.option("log", options->logs,
+    verb.arguments("log", options->logs,
                      "MIMU4444 binary, Xsens DOT CSV, or the CSV of quorient simulate and record; several of one motion are merged")
         .required()
         .value_name("LOG ...");

@@ -1,18 +1,13 @@
 #pragma once
 
-#include "quorient/fdi/axis_health.hpp"
 #include "quorient/fdi/detector.hpp"
-#include "quorient/fdi/observer_readmission.hpp"
-#include "quorient/fdi/readmission.hpp"
 #include "quorient/fdi/settings.hpp"
-#include "quorient/fdi/verdict_machine.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"
 #include "quorient/messages/exclusions.hpp"
 #include "quorient/messages/fault_verdict.hpp"
 #include "quorient/messages/sensor_frame.hpp"
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 
@@ -35,6 +30,10 @@ public:
     static tl::expected<FaultMonitor, std::string> make(std::unique_ptr<Detector> detector, const VerdictSettings& verdict,
                                                         std::size_t channels);
 
+    FaultMonitor(FaultMonitor&&) noexcept;
+    FaultMonitor& operator=(FaultMonitor&&) noexcept;
+    ~FaultMonitor();
+
     /// The verdict of this frame. Frames have passed the intake: in order, finite, of the described cluster. A frame that is not
     /// newer than the last one changes nothing. `detector` and `stamp_ns` are left to the process.
     const FaultVerdict& assess(const SensorFrame& frame);
@@ -53,16 +52,15 @@ public:
     const Assessment& assessment() const { return assessment_; }  ///< of the newest frame
 
 private:
-    FaultMonitor(std::unique_ptr<Detector> detector, const VerdictMachine& machine, AxisMask all);
+    struct Watch;  // what stands behind the method: fault_monitor.cpp
+
+    FaultMonitor(std::unique_ptr<Detector> detector, std::unique_ptr<Watch> watch, AxisMask all);
 
     Measurement measurement_of(const SensorFrame& frame) const;
     void after_change(AxisMask before);
 
     std::unique_ptr<Detector> detector_;
-    VerdictMachine machine_;
-    std::optional<AxisHealth> health_;
-    std::optional<Readmission> readmission_;
-    std::optional<ObserverReadmission> observer_readmission_;
+    std::unique_ptr<Watch> watch_;
     AxisMask returning_ = 0;  ///< from the next frame on
     AxisMask all_;
     bool started_ = false;

@@ -1,0 +1,118 @@
+#include "four_axes/extrapolation_detector.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace quorient::fdi {
+
+std::string_view name(ModulusFallback fallback)
+{
+    switch (fallback) {
+        case ModulusFallback::none:
+            return "none";
+        case ModulusFallback::mean:
+            return "mean";
+        case ModulusFallback::line:
+            return "line";
+        case ModulusFallback::quadratic:
+            return "quadratic";
+    }
+    return "unknown";
+}
+
+namespace {
+
+void fall_back(const std::array<double, 4>& moduli, double resolution, ModulusPrediction& prediction)
+{
+    const auto& [a, b, c, d] = moduli;
+    const auto [low, high] = std::minmax_element(moduli.begin(), moduli.end());
+    const double agreement = 4 * resolution;
+    if (*high - *low <= agreement) {
+        prediction.fallback = ModulusFallback::mean;
+        prediction.predicted = (a + b + c + d) / 4;
+    } else if (std::abs(a - 2 * b + c) <= agreement && std::abs(b - 2 * c + d) <= agreement) {
+        prediction.fallback = ModulusFallback::line;
+        prediction.predicted = -a / 2 + c / 2 + d;
+    } else {
+        prediction.fallback = ModulusFallback::quadratic;
+        prediction.predicted = 3 * d - 3 * c + b;
+    }
+}
+
+}  // namespace
+
+ModulusPrediction predict_modulus(const std::array<double, 4>& moduli, double resolution)
+{
+    // det is a difference of two products of moduli that are themselves rounded: below this it is rounding alone.
+    constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
+
+    const auto& [a, b, c, d] = moduli;
+    ModulusPrediction prediction;
+    prediction.determinant = b * b - a * c;
+    if (std::abs(prediction.determinant) <= rounding * (b * b + std::abs(a * c))) {
+        fall_back(moduli, resolution, prediction);
+        return prediction;
+    }
+    prediction.z1 = (c * c - b * d) / prediction.determinant;
+    prediction.z2 = (a * d - b * c) / prediction.determinant;
+    prediction.predicted = -c * prediction.z1 - d * prediction.z2;
+    return prediction;
+}
+
+double prediction_uncertainty(const std::array<double, 4>& moduli, double resolution)
+{
+    const double predicted = predict_modulus(moduli, resolution).predicted;
+    double squares = 0;
+    for (std::size_t k = 0; k < moduli.size(); ++k) {
+        double moved = 0;
+        for (const double step : {-resolution, resolution}) {
+            auto other = moduli;
+            other[k] += step;
+            moved = std::max(moved, std::abs(predict_modulus(other, resolution).predicted - predicted));
+        }
+        squares += moved * moved;
+    }
+    return std::sqrt(squares);
+}
+
+tl::expected<std::unique_ptr<ExtrapolationDetector>, std::string> ExtrapolationDetector::make(const DetectorSettings& settings,
+                                                                                              const geometry::SensorCluster& cluster)
+{
+    const auto made = geometry_of(settings, cluster, "extrapolation");
+    if (!made) return tl::unexpected(made.error());
+    return std::unique_ptr<ExtrapolationDetector>(new ExtrapolationDetector(*made, settings.margin.value_or(made->bound)));
+}
+
+void ExtrapolationDetector::observe(const Frame& frame)
+{
+    for (std::size_t k = 0; k < axis_count; ++k) triad_modulus_[k] = frame.triad_body[k].norm();
+    predicted_ = learnt_ == modulus_.size();
+    if (!predicted_) return;
+    prediction_ = predict_modulus(modulus_, resolution());
+    uncertainty_ = prediction_uncertainty(modulus_, resolution() / 2);  // what rounding takes at most
+    working_triad_ = 0;
+    for (std::size_t k = 1; k < axis_count; ++k)
+        if (distance(k) < distance(working_triad_)) working_triad_ = k;
+}
+
+void ExtrapolationDetector::learn(const Frame& frame)
+{
+    std::shift_left(modulus_.begin(), modulus_.end(), 1);
+    modulus_.back() = frame.body.norm();
+    learnt_ = std::min<unsigned>(learnt_ + 1, static_cast<unsigned>(modulus_.size()));
+}
+
+void ExtrapolationDetector::attribute(const Frame&, Assessment& assessment)
+{
+    assessment.outcome = Outcome::isolated;
+    assessment.isolated = left_out_by(working_triad_);
+    assessment.add_candidate(assessment.isolated);
+    for (std::size_t k = 0; k < axis_count; ++k) {
+        if (k == working_triad_ || distance(k) - distance(working_triad_) > margin_ + uncertainty_) continue;
+        assessment.add_candidate(left_out_by(k));
+        assessment.outcome = Outcome::ambiguous;
+    }
+    if (assessment.outcome == Outcome::ambiguous) assessment.isolated = 0;
+}
+
+}  // namespace quorient::fdi

@@ -1,0 +1,102 @@
+#include "voter_service.hpp"
+
+#include "quorient/messages/name.hpp"
+
+namespace quorient::voter {
+
+namespace {
+
+constexpr std::int64_t readiness_period_ns = 20'000'000;
+
+/// The strongest voter of the list owns `voted`.
+bus::WriterOptions ownership(const voting::VoterSettings& settings)
+{
+    return {.strength = static_cast<std::int32_t>(settings.voters.size() + 1 - settings.voter), .lease_s = settings.lease_s};
+}
+
+}  // namespace
+
+VoterService::VoterService(const system::VoterProcess& settings, bus::Bus& bus, runtime::EventLoop& loop)
+    : settings_(settings),
+      node_(settings.process.node, bus, loop),
+      outputs_(bus.advertise(bus::topics::voter_output)),
+      voted_(bus.advertise(bus::topics::voted, ownership(settings.voting))),
+      poll_timer_(loop.timer([this] {
+          brain_.poll(node_.clock().steady_ns());
+          drain();
+      })),
+      brain_(settings.voting)
+{
+    const auto now = [this] { return arrival_ns_ = node_.clock().steady_ns(); };
+    node_.main_output([this] { return outputs_.status(); });
+    loop.on(bus.subscribe(bus::topics::voter_output), [this, now](const VotedAttitude& output) {
+        brain_.on_other_voter(output, now());
+        drain();
+    });
+    loop.on(bus.subscribe(bus::topics::verdict), [this, now](const FaultVerdict& verdict) {
+        brain_.on_verdict(verdict, now());
+        drain();
+    });
+    attitudes_ = &loop.on(bus.subscribe(bus::topics::attitude), [this, now](const AttitudeState& attitude) {
+        brain_.on_attitude(attitude, now());
+        drain();
+        node_.handled(identity_of(attitude), arrival_ns_);
+    });
+    node_.watch(
+        bus::topics::attitude.spec.name, [this] { return attitudes_->status(); }, true);
+    node_.watch(
+        bus::topics::voted.spec.name, [this] { return voted_.status(); }, false);
+    // `voted` lives by assertion: a voter that hangs, or has nothing to say, loses it within one lease.
+    loop.every(static_cast<std::int64_t>(settings.voting.lease_s / 4 * 1e9), [this] {
+        if (brain_.may_own()) voted_.assert_liveliness();
+    });
+    loop.until(readiness_period_ns, [this] { return look_at_readiness(); });
+    if (settings.ros2) ros2_.emplace(*settings.ros2, settings.voting, bus, loop);
+    drain();
+}
+
+bool VoterService::look_at_readiness()
+{
+    if (node_.state() != ServiceState::starting) return true;
+    if (attitudes_->status().matched < settings_.voting.lanes.size()) return false;
+    node_.set_state(ServiceState::ready);
+    return true;
+}
+
+void VoterService::drain()
+{
+    VotedAttitude owned;
+    while (brain_.next_owned(owned)) {
+        stamp(owned);
+        voted_.publish(owned);
+    }
+    while (brain_.next_output(output_)) {
+        stamp(output_.attitude);
+        outputs_.publish(output_.attitude);
+        ++node_.status().published;
+        node_.set_state(ServiceState::running);
+    }
+    voting::VoterEvent event;
+    while (brain_.next_event(event)) node_.report(event.code, event.severity, event.identity, event.axes, text_of(event.text));
+    copy_counters();
+    poll_timer_.set(brain_.next_deadline_ns());
+}
+
+void VoterService::stamp(VotedAttitude& output)
+{
+    output.stamp_ns[static_cast<std::size_t>(Hop::voter_in)] = node_.settings().stamps ? arrival_ns_ : 0;
+    output.stamp_ns[static_cast<std::size_t>(Hop::voter_out)] = node_.stamp();
+}
+
+void VoterService::copy_counters()
+{
+    const auto& counters = brain_.counters();
+    auto& status = node_.status();
+    status.gaps = counters.gaps;
+    status.duplicates = counters.duplicates;
+    status.late = counters.late;
+    status.foreign = counters.foreign;
+    status.rejected = counters.rejected;
+}
+
+}  // namespace quorient::voter
