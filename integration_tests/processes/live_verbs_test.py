@@ -48,7 +48,7 @@ class LiveVerbs(ProcessTest):
         self.assertEqual(self.run_program("quorient", "inject", "--clear", "--domain", self.domain).returncode, 0)
         readmitted = self.run_program("quorient", "readmit", "--axis", 2, "--domain", self.domain)
         for detector in named:
-            self.assertIn(f"{detector}: readmits axis 2", readmitted.stdout, readmitted.stderr)
+            self.assertIn(f"{detector}: readmits G3", readmitted.stdout, readmitted.stderr)
         self.assertEqual(readmitted.returncode, 1 if "fdi-c: has not isolated" in readmitted.stdout else 0)
         self.eventually(lambda: self.echo("voter_output", 1)[0]["isolated_mask"] == 0, "axis 2 trusted again")
 
