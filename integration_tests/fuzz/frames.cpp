@@ -95,7 +95,7 @@ void frames(const std::uint8_t* data, std::size_t size)
     constexpr std::array<std::uint8_t, 7> axis_counts{3, 4, 5, 6, 7, 8, 9};
     constexpr std::array algorithms{"window-10", "block-4", "previous", "four-sample"};
     const auto axes = axis_counts[bytes.below(axis_counts.size())];
-    const auto& method = fdi::methods()[bytes.below(static_cast<std::uint32_t>(fdi::methods().size()))].name;
+    const auto& method = fdi::methods()[bytes.below(static_cast<std::uint32_t>(fdi::methods().size()))].word;
     Lane lane{std::string{method}, algorithms[bytes.below(algorithms.size())]};
     runtime::FrameIntake intake{unit, SensorKind::gyro};
     std::uint64_t epoch = 1, sequence = 0;

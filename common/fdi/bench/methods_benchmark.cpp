@@ -76,7 +76,7 @@ void add_methods(const std::string& axes, const std::string& layout)
     benchmark::RegisterBenchmark(("product/" + axes).c_str(), product, layout);
     for (const auto& entry : fdi::methods()) {
         fdi::DetectorSettings settings;
-        settings.method = entry.name;
+        settings.method = entry.word;
         settings.sigma = 1;
         settings.bound = 4;
         if (settings.method == "auto" || !fdi::make_detector(settings, cluster)) continue;

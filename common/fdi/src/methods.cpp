@@ -12,6 +12,7 @@
 #include "single_frame/voting_detector.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 
 namespace quorient::fdi {
 
@@ -34,8 +35,9 @@ bool asks_for_accumulating(const DetectorSettings& settings, const geometry::Sen
     return cluster.instrument_name.size() >= least_instruments && settings.max_faults.value_or(1) == 1 && !settings.margin;
 }
 
-Made make_automatic(DetectorSettings settings, const geometry::SensorCluster& cluster)
+Made make_automatic(const DetectorSettings& asked, const geometry::SensorCluster& cluster)
 {
+    DetectorSettings settings = asked;
     if (cluster.size() == FourAxisDetector::axis_count) return made<VectorDetector>(settings, cluster);
     if (asks_for_accumulating(settings, cluster))
         if (auto detector = made<AccumulatingDetector>(settings, cluster)) return detector;  // else these are no instruments of three directions
@@ -44,47 +46,50 @@ Made make_automatic(DetectorSettings settings, const geometry::SensorCluster& cl
     return made<GltDetector>(settings, cluster);
 }
 
-struct Factory {
-    std::string_view method;
-    Made (*make)(const DetectorSettings&, const geometry::SensorCluster&);
-};
-
-constexpr Factory factories[] = {
-    {"guaranteed", made<GuaranteedDetector>},   {"invariants", made<InvariantsDetector>},
-    {"voting", made<VotingDetector>},           {"mean", made<MeanDetector>},
-    {"glt", made<GltDetector>},     {"parity-set", made<ParitySetDetector>},
-    {"subset", made<SubsetDetector>}, {"extrapolation", made<ExtrapolationDetector>},
-    {"vector", made<VectorDetector>},  {"accumulating", made<AccumulatingDetector>},
-};
-
 }  // namespace
 
-const std::vector<MethodEntry>& methods()
+std::span<const Method> methods()
 {
-    static const std::vector<MethodEntry> entries{
-        {"auto", "4 to 24",
-         "vector on four axes; accumulating on three or more triads; else subset where faults take instruments; else glt"},
-        {"guaranteed", "max_faults + 4 to 8", "set-membership estimation: never wrong while noise stays within its bound"},
-        {"invariants", "6 to 24", "every four axes' motion-free combination"},
-        {"voting", "6 to 24", "every three axes' estimate against every other three's"},
-        {"mean", "5 to 24", "the axis farthest from the mean leaves it, repeatedly"},
-        {"glt", "4 to 24", "generalised likelihood ratio test of one axis"},
-        {"parity-set", "4 to 24", "the same by the minimal set of parity equations"},
-        {"subset", "4 to 24", "likelihood of every set of up to max_faults axes or instruments"},
-        {"extrapolation", "4", "the triad whose modulus fits the extrapolated one (the paper's method)"},
-        {"vector", "4", "the triad whose body vector fits the extrapolated one"},
-        {"accumulating", "6 to 24", "instruments that each span space, compared over windows of up to 512 frames"},
+    using enum MethodInput;
+    static const std::vector<Method> table{
+        {"auto", "4 to 24", "vector on four axes; accumulating on three or more triads; else subset where faults take instruments; else glt",
+         MethodInput::rows, {}, "", make_automatic},
+        {"guaranteed", "max_faults + 4 to 8", "set-membership estimation: never wrong while noise stays within its bound", row,
+         {"bound", "threshold", "max-faults", "direction"},
+         "feasible_sets, empty, interval, estimate, half_width, decision, direction_interval", made<GuaranteedDetector>},
+        {"invariants", "6 to 24", "every four axes' motion-free combination", row, {"tolerance", "relaxed", "max-faults"},
+         "values, passed, passed_count", made<InvariantsDetector>},
+        {"voting", "6 to 24", "every three axes' estimate against every other three's", row, {"tolerance", "max-faults"}, "passed_count",
+         made<VotingDetector>},
+        {"mean", "5 to 24", "the axis farthest from the mean leaves it, repeatedly", row, {"tolerance", "max-faults"}, "",
+         made<MeanDetector>},
+        {"glt", "4 to 24", "generalised likelihood ratio test of one axis", row, {"sigma", "pfa", "margin"},
+         "per_axis, bias_estimate, parity", made<GltDetector>},
+        {"parity-set", "4 to 24", "the same by the minimal set of parity equations", row, {"sigma", "pfa", "margin"}, "parity",
+         made<ParitySetDetector>},
+        {"subset", "4 to 24", "likelihood of every set of up to max_faults axes or instruments", row,
+         {"sigma", "pfa", "max-faults", "margin", "doubt", "instruments"}, "scores", made<SubsetDetector>},
+        {"extrapolation", "4", "the triad whose modulus fits the extrapolated one (the paper's method)", rows, {"tolerance"},
+         "predicted, triad_modulus, working_triad, z1, z2, determinant, fallback", made<ExtrapolationDetector>},
+        {"vector", "4", "the triad whose body vector fits the extrapolated one", rows, {"tolerance"},
+         "predicted, triad_distance, working_triad, order", made<VectorDetector>},
+        {"accumulating", "6 to 24", "instruments that each span space, compared over windows of up to 512 frames", instruments, {}, "",
+         made<AccumulatingDetector>},
     };
-    return entries;
+    return table;
+}
+
+const Method* find_method(std::string_view word)
+{
+    const auto found = std::ranges::find(methods(), word, &Method::word);
+    return found == methods().end() ? nullptr : &*found;
 }
 
 tl::expected<std::unique_ptr<Detector>, std::string> make_detector(const DetectorSettings& settings, const geometry::SensorCluster& cluster)
 {
-    if (settings.method == "auto") return make_automatic(settings, cluster);
-    for (const Factory& factory : factories)
-        if (factory.method == settings.method) return factory.make(settings, cluster);
+    if (const Method* method = find_method(settings.method)) return method->make(settings, cluster);
     std::string known;
-    for (const MethodEntry& entry : methods()) known += (known.empty() ? "" : ", ") + std::string(entry.name);
+    for (const Method& method : methods()) known += (known.empty() ? "" : ", ") + std::string(method.word);
     return tl::unexpected(fmt::format("unknown detection method '{}'; known are {}", settings.method, known));
 }
 

@@ -12,6 +12,8 @@
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
 
 namespace quorient::fdi {
@@ -33,7 +35,14 @@ std::unique_ptr<Detector> detector_for(const std::string& method, const geometry
     return std::move(*made);
 }
 
-const std::vector<std::string> on_six_axes{"auto", "guaranteed", "invariants", "voting", "mean", "glt", "parity-set", "subset"};
+/// `auto` and every method that judges single rows.
+std::vector<std::string> on_six_axes()
+{
+    std::vector<std::string> words{"auto"};
+    for (const Method& method : methods())
+        if (method.input == MethodInput::row) words.emplace_back(method.word);
+    return words;
+}
 
 class EveryMethod : public testing::TestWithParam<std::string> {};
 
@@ -129,7 +138,7 @@ TEST_P(EveryMethod, serves_a_frame_without_any_axis)
     EXPECT_EQ(assess(*detector, measure(cluster, {10, -20, 30}, {{2, 200}})).isolated, axis_bit(2));
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod, testing::ValuesIn(on_six_axes), [](const auto& test) {
+INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod, testing::ValuesIn(on_six_axes()), [](const auto& test) {
     std::string name = test.param;
     std::replace(name.begin(), name.end(), '-', '_');
     return name;
@@ -139,7 +148,7 @@ TEST(MakeDetector, refuses_bad_figures_for_every_method)
 {
     const auto cluster = cluster_named("dodecahedron");
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    for (const auto& method : on_six_axes)
+    for (const auto& method : on_six_axes())
         for (const double bad : {nan, -1.0, 0.0, std::numeric_limits<double>::infinity()}) {
             auto settings = settings_for(method);
             settings.sigma = bad;
@@ -180,10 +189,23 @@ TEST(MakeDetector, knows_every_method_that_it_lists)
 {
     for (const auto& entry : methods()) {
         const bool four = entry.axes == "4";
-        const bool array = entry.name == "accumulating";
+        const bool array = entry.input == MethodInput::instruments;
         auto cluster = cluster_named(four ? "cone-4" : array ? "triads-3" : "dodecahedron");
         cluster.interval_s = 0.01;
-        EXPECT_TRUE(make_detector(settings_for(std::string(entry.name)), cluster)) << entry.name;
+        EXPECT_TRUE(make_detector(settings_for(std::string(entry.word)), cluster)) << entry.word;
+    }
+}
+
+TEST(MakeDetector, s_methods_are_those_of_the_readme)
+{
+    std::ifstream file(std::string(QUORIENT_SOURCE_DIR "/common/fdi/README.md"));
+    const std::string readme{std::istreambuf_iterator<char>(file), {}};
+    ASSERT_FALSE(readme.empty());
+    for (const Method& method : methods()) {
+        const auto row = readme.find("\n| `" + std::string(method.word) + "` |");
+        ASSERT_NE(row, std::string::npos) << method.word;
+        const auto cells = readme.substr(row, readme.find('\n', row + 1) - row);
+        EXPECT_NE(cells.find("| " + std::string(method.axes) + " |"), std::string::npos) << method.word << ": " << method.axes << " axes";
     }
 }
 

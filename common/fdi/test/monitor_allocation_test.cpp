@@ -32,15 +32,15 @@ SensorFrame frame_of(const geometry::SensorCluster& cluster, std::uint64_t seque
 
 TEST(FaultMonitor, allocates_nothing_per_frame)
 {
-    for (const MethodEntry& method : methods()) {
-        SCOPED_TRACE(std::string(method.name));
-        const bool four = method.name == "vector" || method.name == "extrapolation";
-        const bool array = method.name == "accumulating";
+    for (const Method& method : methods()) {
+        SCOPED_TRACE(std::string(method.word));
+        const bool four = method.word == "vector" || method.word == "extrapolation";
+        const bool array = method.word == "accumulating";
         auto cluster = geometry::layout(four ? "cone-4" : array ? "triads-3" : "cone-6").value();
         cluster.interval_s = 0.005;
         cluster.sigma.setConstant(1e-6);
         cluster.quantum.setConstant(1e-6);
-        auto monitor = FaultMonitor::make({.method = std::string(method.name),
+        auto monitor = FaultMonitor::make({.method = std::string(method.word),
                                            .tolerance = 1e-5,
                                            .bound = 1e-5,
                                            .threshold = 1e-4,

@@ -49,10 +49,9 @@ void parse_detection(Section section, const System& system, DetectorProcess& det
     section.boolean("instruments", detection.instruments);
     section.boolean("relaxed", detection.relaxed);
     parse_verdict(section, detector.verdict);
-    const auto& methods = fdi::methods();
-    if (std::none_of(methods.begin(), methods.end(), [&](const auto& entry) { return entry.name == detection.method; })) {
+    if (!fdi::find_method(detection.method)) {
         std::vector<std::string_view> names;
-        for (const auto& entry : methods) names.push_back(entry.name);
+        for (const auto& entry : fdi::methods()) names.push_back(entry.word);
         section.problem("method", fmt::format("unknown method '{}'; known are {}", detection.method, fmt::join(names, ", ")));
     }
     section.finish();

@@ -1,8 +1,9 @@
-#include "assess_methods.hpp"
 #include "cli/cluster_input.hpp"
 #include "cli/csv_input.hpp"
-#include "cli/program.hpp"
+#include "cli/details_json.hpp"
 #include "cli/json_output.hpp"
+#include "cli/program.hpp"
+#include "quorient/fdi/methods.hpp"
 #include "verbs.hpp"
 
 #include <fmt/format.h>
@@ -34,27 +35,30 @@ std::string_view name_of(fdi::Outcome outcome)
     return outcome_names[static_cast<std::size_t>(outcome)];
 }
 
-const AssessMethod& method_of(const AssessOptions& options)
+/// Methods that say something of rows without instruments.
+std::vector<const fdi::Method*> offered()
 {
-    return *std::find_if(assess_methods().begin(), assess_methods().end(),
-                         [&](const AssessMethod& method) { return method.name == options.settings.method; });
+    std::vector<const fdi::Method*> methods;
+    for (const fdi::Method& method : fdi::methods())
+        if (method.word != "auto" && method.input != fdi::MethodInput::instruments) methods.push_back(&method);
+    return methods;
 }
 
 /// An option that the method would ignore is a mistake, not a wish.
-void refuse_foreign_options(const Verb& verb, const AssessMethod& method)
+void refuse_foreign_options(const Verb& verb, const fdi::Method& method)
 {
-    for (const AssessMethod& other : assess_methods())
-        for (const std::string& option : other.options)
-            if (verb.given(option) && std::find(method.options.begin(), method.options.end(), option) == method.options.end())
-                fail(fmt::format("{} means nothing to method {}, which takes {}", option, method.name, fmt::join(method.options, ", ")));
+    for (const fdi::Method* other : offered())
+        for (const std::string_view setting : other->settings)
+            if (verb.given(fmt::format("--{}", setting)) && std::ranges::find(method.settings, setting) == method.settings.end())
+                fail(fmt::format("--{} means nothing to method {}, which takes --{}", setting, method.word, fmt::join(method.settings, ", --")));
 }
 
-std::optional<Eigen::Vector3d> direction_of(const AssessOptions& options)
+std::optional<std::array<double, 3>> direction_of(const AssessOptions& options)
 {
     if (options.direction.empty()) return {};
-    if (options.direction.size() != 3) fail("--direction takes three numbers, as in 0,0,1");
-    const Eigen::Vector3d direction(options.direction[0], options.direction[1], options.direction[2]);
-    if (!direction.allFinite() || direction.isZero()) fail("--direction must be finite and not zero");
+    const std::array<double, 3> direction{options.direction[0], options.direction[1], options.direction[2]};
+    const bool finite = std::ranges::all_of(direction, [](double component) { return std::isfinite(component); });
+    if (!finite || direction == std::array<double, 3>{}) fail("--direction must be finite and not zero");
     return direction;
 }
 
@@ -78,12 +82,14 @@ Json row_json(std::size_t row, const fdi::Assessment& assessment, std::size_t ax
 
 void run(const AssessOptions& options, const Verb& verb)
 {
-    refuse_foreign_options(verb, method_of(options));
+    refuse_foreign_options(verb, *fdi::find_method(options.settings.method));
     if (options.choice.name().empty()) fail("which axes? --layout NAME of the catalogue (quorient layout lists it), or --axes FILE");
     const auto cluster = load_cluster(options.choice);
     if (!cluster) fail(cluster.error());
-    auto assessor = make_assessor(options.settings, *cluster, direction_of(options));
-    if (!assessor) fail(assessor.error());
+    auto settings = options.settings;
+    settings.direction = direction_of(options);
+    const auto detector = fdi::make_detector(settings, *cluster);
+    if (!detector) fail(detector.error());
     auto input = CsvReader::open(options.file, {.columns = cluster->size()});
     if (!input) fail(input.error());
 
@@ -94,10 +100,10 @@ void run(const AssessOptions& options, const Verb& verb)
         const auto more = input->next(row);
         if (!more) fail(more.error());
         if (!*more) break;
-        assessor->detector->assess(
+        (*detector)->assess(
             {.identity = {.epoch = 1, .sequence = number}, .interval_s = 1, .increment = row.value, .valid = cluster->all()}, assessment);
         Json object = row_json(number, assessment, cluster->size());
-        assessor->add_fields(assessment, object);
+        for (const fdi::Detail& detail : (*detector)->details(assessment)) object[std::string(detail.name)] = json_of(detail.value);
         fmt::print("{}\n", dump(object));
         as_expected = as_expected && (options.check.empty() || options.check == name_of(assessment.outcome));
     }
@@ -108,7 +114,7 @@ void add_method_options(Verb& verb, AssessOptions& options)
 {
     fdi::DetectorSettings& settings = options.settings;
     std::vector<std::string> names;
-    for (const AssessMethod& method : assess_methods()) names.push_back(method.name);
+    for (const fdi::Method* method : offered()) names.emplace_back(method->word);
     verb.option("--method", settings.method, "how to judge a row").required().one_of(names);
     verb.option("--tolerance", settings.tolerance,
                     "invariants: of |v'z|, v of unit norm; voting: of a difference's norm; mean: of "
@@ -137,8 +143,8 @@ void add_assess(Program& program)
     std::string footer =
         "One measurement per row, one number per axis, in any unit; --sigma, --bound, --threshold and --tolerance are in the same.\n"
         "Axes are 0-based, rows too. Fields of each method beside the common ones:\n";
-    for (const AssessMethod& method : assess_methods())
-        if (!method.fields.empty()) footer += fmt::format("  {:<14}{}\n", method.name, method.fields);
+    for (const fdi::Method* method : offered())
+        if (!method->details.empty()) footer += fmt::format("  {:<14}{}\n", method->word, method->details);
     footer +=
         "\nExample: two of six gyros are wrong (deg/h)\n"
         "  echo -393.04,1075.35,-612.73,-593.11,1254.79,-761.19 |\n"

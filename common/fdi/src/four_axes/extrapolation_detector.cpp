@@ -115,4 +115,18 @@ void ExtrapolationDetector::attribute(const Frame&, Assessment& assessment)
     if (assessment.outcome == Outcome::ambiguous) assessment.isolated = 0;
 }
 
+std::vector<Detail> ExtrapolationDetector::details(const Assessment&) const
+{
+    const std::vector<double> moduli(triad_modulus_.begin(), triad_modulus_.end());
+    if (!predicted_)
+        return {{"predicted", {}}, {"triad_modulus", moduli}, {"working_triad", {}}, {"z1", {}}, {"z2", {}}, {"determinant", {}}, {"fallback", {}}};
+    return {{"predicted", prediction_.predicted},
+            {"triad_modulus", moduli},
+            {"working_triad", Detail::Axes{triad(working_triad_).mask()}},
+            {"z1", prediction_.z1},
+            {"z2", prediction_.z2},
+            {"determinant", prediction_.determinant},
+            {"fallback", std::string(name(prediction_.fallback))}};
+}
+
 }  // namespace quorient::fdi

@@ -60,6 +60,8 @@ public:
     /// Index of the triad nearest to the prediction; meaningless without one.
     std::size_t working_triad() const { return working_triad_; }
 
+    std::vector<Detail> details(const Assessment& assessment) const override;
+
 private:
     ExtrapolationDetector(const Geometry& made, double margin) : FourAxisDetector(made), margin_(margin) {}
 

@@ -193,4 +193,14 @@ void VectorDetector::name_unrefuted(Assessment& assessment) const
     if (assessment.outcome == Outcome::isolated) assessment.isolated = left_out_by(best);
 }
 
+std::vector<Detail> VectorDetector::details(const Assessment&) const
+{
+    if (!prediction_) return {{"predicted", {}}, {"triad_distance", {}}, {"working_triad", {}}, {"order", {}}};
+    const Eigen::Vector3d& body = prediction_->body;
+    return {{"predicted", std::vector<double>(body.data(), body.data() + 3)},
+            {"triad_distance", std::vector<double>(distance_.begin(), distance_.end())},
+            {"working_triad", Detail::Axes{triad(working_triad_).mask()}},
+            {"order", std::int64_t{prediction_->order}}};
+}
+
 }  // namespace quorient::fdi

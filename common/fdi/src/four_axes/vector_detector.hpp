@@ -41,6 +41,8 @@ public:
     /// Index of the triad nearest to the prediction; meaningless without one.
     std::size_t working_triad() const { return working_triad_; }
 
+    std::vector<Detail> details(const Assessment& assessment) const override;
+
 private:
     /// One candidate: a polynomial of this order over this many frames.
     struct Polynomial {

@@ -49,4 +49,17 @@ void GltDetector::judge(const geometry::AxisVector& z, Assessment& assessment)
     rule_.judge(parity_, parity.squaredNorm(), explained_, assessment);
 }
 
+std::vector<Detail> GltDetector::details(const Assessment&) const
+{
+    std::vector<double> per_axis;
+    std::vector<double> parities;
+    std::size_t best = 0;
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(explained_.size()); ++axis) {
+        per_axis.push_back(explained(axis));
+        parities.push_back(parity(axis));
+        if (explained(axis) > explained(best)) best = axis;
+    }
+    return {{"per_axis", per_axis}, {"bias_estimate", parities[best]}, {"parity", parities}};
+}
+
 }  // namespace quorient::fdi

@@ -26,6 +26,8 @@ public:
     double explained(std::size_t axis) const { return explained_(static_cast<Eigen::Index>(axis)); }  ///< D_i
     double parity(std::size_t axis) const;                                                            ///< p_i
 
+    std::vector<Detail> details(const Assessment& assessment) const override;
+
 private:
     GltDetector(const geometry::SensorCluster& cluster, geometry::AxisVector sigma, SingleFaultRule rule);
 

@@ -66,6 +66,7 @@ tl::expected<std::unique_ptr<GuaranteedDetector>, std::string> GuaranteedDetecto
                         "set threshold",
                         max_faults, n - max_faults));
     detector->configured_threshold_ = settings.threshold;
+    if (settings.direction) detector->direction_ = Eigen::Map<const Eigen::Vector3d>(settings.direction->data());
     return detector;
 }
 
@@ -307,6 +308,45 @@ GuaranteedDetector::Interval GuaranteedDetector::interval_along(const Eigen::Vec
         hull.upper = std::max(hull.upper, interval.upper);
     }
     return hull;
+}
+
+/// Where every set is empty nothing is estimated: NaN in the shape of the figures.
+void GuaranteedDetector::add_axes(const Assessment& assessment, std::vector<Detail>& details) const
+{
+    const auto axes = static_cast<std::size_t>(cluster().axes.rows());
+    std::vector<Detail::Interval> intervals;
+    std::vector<double> estimate;
+    std::vector<double> half_width;
+    std::vector<std::string> decisions;
+    for (std::size_t axis = 0; axis < axes; ++axis) {
+        const Interval hull = empty() ? Interval{NAN, NAN} : interval(axis);
+        intervals.push_back({hull.lower, hull.upper});
+        estimate.push_back(0.5 * (hull.lower + hull.upper));
+        half_width.push_back(empty() ? NAN : assessment.bound[axis]);
+        decisions.push_back(empty() ? std::string() : std::string(1, decision(axis)));
+    }
+    if (empty()) details.push_back({"residual", std::vector<double>(axes, NAN)});
+    details.push_back({"interval", std::move(intervals)});
+    details.push_back({"estimate", std::move(estimate)});
+    details.push_back({"half_width", std::move(half_width)});
+    details.push_back({"decision", std::move(decisions)});
+}
+
+std::vector<Detail> GuaranteedDetector::details(const Assessment& assessment) const
+{
+    std::vector<Detail::Axes> sets;
+    for (std::size_t w = 0; w < set_count(); ++w)
+        if (feasible(w)) sets.push_back({set(w)});
+    std::vector<Detail> details;
+    if (assessment.outcome == Outcome::ambiguous) details.push_back({"candidates", sets});
+    details.push_back({"feasible_sets", sets});
+    details.push_back({"empty", empty()});
+    add_axes(assessment, details);
+    if (direction_) {
+        const Interval along = interval_along(*direction_);
+        details.push_back({"direction_interval", Detail::Interval{along.lower, along.upper}});
+    }
+    return details;
 }
 
 }  // namespace quorient::fdi

@@ -60,6 +60,8 @@ public:
 
     double threshold() const { return threshold_; }
 
+    std::vector<Detail> details(const Assessment& assessment) const override;
+
 private:
     static constexpr int max_size = 8;
     static constexpr std::size_t max_sets = 28;       // 8 over 2
@@ -105,10 +107,12 @@ private:
     double test_feasibility(const geometry::AxisVector& z);
     void bound_axes(const geometry::AxisVector& z);
     void decide(const geometry::AxisVector& z, Assessment& assessment);
+    void add_axes(const Assessment& assessment, std::vector<Detail>& details) const;
 
     geometry::AxisVector bound_;
     unsigned max_faults_;
     std::optional<double> configured_threshold_;
+    std::optional<Eigen::Vector3d> direction_;  ///< of the additional interval in details()
     double threshold_ = 0;
     double largest_bound_ = 0;
 

@@ -145,4 +145,12 @@ AxisMask InvariantsDetector::relaxed_exclusion() const
     return best;
 }
 
+std::vector<Detail> InvariantsDetector::details(const Assessment&) const
+{
+    const std::vector<bool> passes(passed_.begin(), passed_.end());
+    return {{"values", values_},
+            {"passed_count", std::int64_t{std::count(passes.begin(), passes.end(), true)}},
+            {"passed", passes}};
+}
+
 }  // namespace quorient::fdi

@@ -33,6 +33,8 @@ public:
     std::span<const double> values() const { return values_; }
     std::span<const std::uint8_t> passed() const { return passed_; }
 
+    std::vector<Detail> details(const Assessment& assessment) const override;
+
 private:
     struct Quadruple {
         std::array<std::uint8_t, 4> axis{};

@@ -43,4 +43,9 @@ void ParitySetDetector::judge(const geometry::AxisVector& z, Assessment& assessm
     rule_.judge(parity_, p_.squaredNorm(), explained, assessment);
 }
 
+std::vector<Detail> ParitySetDetector::details(const Assessment&) const
+{
+    return {{"parity", std::vector<double>(p_.data(), p_.data() + p_.size())}};
+}
+
 }  // namespace quorient::fdi

@@ -23,6 +23,8 @@ public:
     /// p of the last frame, in the unit of z.
     const geometry::AxisVector& parity() const { return p_; }
 
+    std::vector<Detail> details(const Assessment& assessment) const override;
+
 private:
     ParitySetDetector(const geometry::SensorCluster& cluster, geometry::AxisVector sigma, SingleFaultRule rule);
 

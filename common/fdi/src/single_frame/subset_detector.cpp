@@ -271,4 +271,12 @@ void SubsetDetector::name(const Set& chosen, double statistic, std::size_t tried
     assessment.isolated = chosen.axes;
 }
 
+std::vector<Detail> SubsetDetector::details(const Assessment&) const
+{
+    constexpr std::size_t shown = 5;
+    std::vector<ScoredSet> scores;
+    for (const Score& score : best().first(std::min(shown, best().size()))) scores.push_back({score.axes, score.statistic});
+    return {{"scores", scores}};
+}
+
 }  // namespace quorient::fdi

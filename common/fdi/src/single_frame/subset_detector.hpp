@@ -49,6 +49,8 @@ public:
     /// The sets of the last frame that leave least, best first, among those tried (up to the size that decided).
     std::span<const Score> best() const { return {best_.data(), best_count_}; }
 
+    std::vector<Detail> details(const Assessment& assessment) const override;
+
 private:
     struct Set {
         AxisMask axes = 0;

@@ -115,4 +115,9 @@ void VotingDetector::judge(const geometry::AxisVector& z, Assessment& assessment
     assessment.outcome = !faulty ? Outcome::refused : *faulty == 0 ? Outcome::healthy : Outcome::isolated;
 }
 
+std::vector<Detail> VotingDetector::details(const Assessment&) const
+{
+    return {{"passed_count", static_cast<std::int64_t>(passed_count())}};
+}
+
 }  // namespace quorient::fdi

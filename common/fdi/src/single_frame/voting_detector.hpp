@@ -30,6 +30,8 @@ public:
     std::size_t passed_count() const { return passed_count_; }
     std::size_t pair_count() const { return passed_.size(); }
 
+    std::vector<Detail> details(const Assessment& assessment) const override;
+
 private:
     VotingDetector(const DetectorSettings& settings, const geometry::SensorCluster& cluster, geometry::AxisVector sigma);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "quorient/fdi/detail.hpp"
 #include "quorient/messages/identity.hpp"
 #include "quorient/messages/limits.hpp"
 
@@ -9,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace quorient::fdi {
 
@@ -73,6 +75,9 @@ public:
 
     /// Of any axis in the newest frame. @returns nothing where the method keeps no watch on excluded axes, or cannot say in this frame.
     virtual std::optional<Expectation> expectation(std::size_t) const { return std::nullopt; }
+
+    /// The method's own figures of its newest frame, beside those of the assessment; one of the same name replaces it. Allocates.
+    virtual std::vector<Detail> details(const Assessment&) const { return {}; }
 
     /// Why the newest assessment is `blind` or `warming_up`, where that has a reason of its own; else empty.
     virtual std::string_view reason() const { return {}; }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -22,6 +23,7 @@ struct DetectorSettings {
     std::optional<double> pfa{};    ///< false-alarm probability of one frame
     std::optional<double> bound{};
     std::optional<double> threshold{};
+    std::optional<std::array<double, 3>> direction{};  ///< guaranteed: also the interval along this body vector
     std::optional<unsigned> max_faults{};
     std::optional<double> margin{};
     std::optional<double> doubt{};         ///< subset: share of right isolations held back because one more, small fault is not ruled out
