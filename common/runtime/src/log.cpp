@@ -22,7 +22,7 @@ int report(std::string_view problem)
     return 2;
 }
 
-int guarded(int (*body)(int, char**), int argc, char** argv)
+int guarded(const std::function<int(int, char**)>& body, int argc, char** argv)
 {
     start_log();
     try {

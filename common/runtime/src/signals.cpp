@@ -37,7 +37,7 @@ const std::atomic<bool>& termination_requested()
     return requested;
 }
 
-int ends_within(unsigned patience_s, int exit_code)
+void leave_within(unsigned patience_s, int exit_code)
 {
     overdue_exit_code = exit_code;
     struct sigaction action {};
@@ -45,7 +45,6 @@ int ends_within(unsigned patience_s, int exit_code)
     sigemptyset(&action.sa_mask);
     sigaction(SIGALRM, &action, nullptr);
     ::alarm(patience_s);
-    return exit_code;
 }
 
 }  // namespace quorient::runtime

@@ -10,7 +10,7 @@ TEST(EndsWithinDeathTest, a_process_that_cannot_leave_ends_with_its_exit_code_an
 {
     EXPECT_EXIT(
         {
-            ends_within(1, 7);
+            leave_within(1, 7);
             for (;;) ::pause();
         },
         testing::ExitedWithCode(7), "could not be left in time");
@@ -18,7 +18,12 @@ TEST(EndsWithinDeathTest, a_process_that_cannot_leave_ends_with_its_exit_code_an
 
 TEST(EndsWithinDeathTest, a_process_that_leaves_in_time_says_nothing)
 {
-    EXPECT_EXIT(std::_Exit(ends_within(1, 7)), testing::ExitedWithCode(7), "^$");
+    EXPECT_EXIT(
+        {
+            leave_within(1, 7);
+            std::_Exit(7);
+        },
+        testing::ExitedWithCode(7), "^$");
 }
 
 }  // namespace quorient::runtime

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -8,10 +9,10 @@ namespace quorient::runtime {
 /// Logs go to stderr, a line each: time, level, text. $QUORIENT_LOG sets the level (debug, info, warn, error).
 void start_log();
 
-/// Tells a problem (one or several lines) on stderr. @returns 2, the exit code of bad input.
+/// Explains a problem (one or several lines) on stderr. @returns 2, the exit code of bad input.
 int report(std::string_view problem);
 
 /// Runs a service's main: an environment that refuses an entity at start-up is reported, exit code 1.
-int guarded(int (*body)(int, char**), int argc, char** argv);
+int guarded(const std::function<int(int, char**)>& body, int argc, char** argv);
 
 }  // namespace quorient::runtime
