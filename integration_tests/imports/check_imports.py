@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Checks the direction of imports from the include lines: a room uses only the rooms it may.
 
-usage: check_imports.py ROOT [--figure]      exit 1 and one line per violation
+usage: check_imports.py ROOT              exit 1 and one line per violation
+       check_imports.py ROOT --picture    the rooms as a mermaid diagram
+       check_imports.py ROOT --write      puts that diagram into ARCHITECTURE.md
 """
 import pathlib
 import re
@@ -103,9 +105,9 @@ def upward_references(root):
                 yield f"{path.relative_to(root)}:{number}: a room's README must not point up into services/"
 
 
-def figure(root):
-    """The imports found in the sources: room -> rooms that it includes."""
-    edges = {}
+def edges(root):
+    """Room -> the rooms whose headers it really includes."""
+    found = {room: set() for room in ALLOWED}
     for path in (root / "common").rglob("*.?pp"):
         room = path.relative_to(root).parts[1]
         if "test" in path.parts or "bench" in path.parts:
@@ -113,15 +115,43 @@ def figure(root):
         for _, include in includes(path):
             used = re.match(r'"quorient/(\w+)/', include)
             if used and used.group(1) != room:
-                edges.setdefault(room, set()).add(used.group(1))
+                found.setdefault(room, set()).add(used.group(1))
+    return found
+
+
+def reachable(direct, room):
+    seen, waiting = set(), list(direct[room])
+    while waiting:
+        next_room = waiting.pop()
+        if next_room not in seen:
+            seen.add(next_room)
+            waiting += direct.get(next_room, ())
+    return seen
+
+
+def picture(root):
+    """@returns the rooms as a mermaid diagram; an arrow that follows from others is left out."""
+    direct = edges(root)
+    lines = ["```mermaid", "flowchart BT"]
     for room in ALLOWED:
-        print(f"{room:<12} -> {', '.join(sorted(edges.get(room, set()))) or '(nothing)'}")
+        implied = set().union(*(reachable(direct, used) for used in direct[room]))
+        lines += [f"    {room} --> {used}" for used in sorted(direct[room] - implied)]
+    return "\n".join(lines + ["```"])
+
+
+def with_picture(root):
+    """@returns ARCHITECTURE.md with the picture of today's imports in its place."""
+    page = (root / "ARCHITECTURE.md").read_text()
+    return re.sub(r"```mermaid\nflowchart BT\n.*?```", lambda _: picture(root), page, count=1, flags=re.S)
 
 
 def main():
     root = pathlib.Path(sys.argv[1])
-    if "--figure" in sys.argv:
-        figure(root)
+    if "--picture" in sys.argv:
+        print(picture(root))
+        return 0
+    if "--write" in sys.argv:
+        (root / "ARCHITECTURE.md").write_text(with_picture(root))
         return 0
     found = list(problems(root)) + list(upward_references(root))
     print("\n".join(found))

@@ -19,6 +19,14 @@ class Imports(unittest.TestCase):
         result = check(ROOT)
         self.assertEqual(result.returncode, 0, result.stdout)
 
+    def test_are_drawn_in_the_architecture(self):
+        sys.path.insert(0, str(HERE))
+        import check_imports
+
+        page = (ROOT / "ARCHITECTURE.md").read_text()
+        self.assertIn("flowchart BT", page)
+        self.assertEqual(page, check_imports.with_picture(ROOT), "stale picture: check_imports.py . --write")
+
     def planted(self, path, line):
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
