@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 
-from scheduling import Scheduling
+from integration_tests.containers.scheduling import Scheduling
 
 COMPOSE_FILE = pathlib.Path(__file__).resolve().parents[2] / "deploy/docker-compose.yml"
 SYSTEM_FILE = COMPOSE_FILE.parent / "configurations/compose.yaml"

@@ -1,13 +1,10 @@
 """What the observer's container receives, line by line, while it receives it."""
 import json
-import pathlib
 import subprocess
-import sys
 import threading
 from typing import NamedTuple
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "kill_matrix"))
-from streams import parse_truth, parse_voted  # noqa: E402
+from integration_tests.harness.streams import parse_truth, parse_voted
 
 
 class Event(NamedTuple):

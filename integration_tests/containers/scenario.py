@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Breaks the running containers in four ways, and judges them by the plain observer's stream and the simulator's truth.
 
 A chapter that misses a deadline is repeated, twice at most, if this machine kept a sleeping thread from running for 20 ms meanwhile. The
@@ -13,11 +12,11 @@ import time
 from dataclasses import dataclass, field
 from typing import Callable
 
-from containers import SERVICES, Containers
-from observed import Observed  # imported first: it puts the kill matrix on the path
-from judge import disordered, errors, frames_until, largest_gap, missing_frames
-from streams import DEGRADED, FULL
-from trace import steps_text, table
+from integration_tests.containers.containers import Containers
+from integration_tests.containers.observed import Observed
+from integration_tests.harness.judge import disordered, errors, largest_gap, missing_frames
+from integration_tests.harness.streams import DEGRADED, FULL
+from integration_tests.containers.trace import steps_text, table
 
 FAULTY_AXIS, FAULT_RAD_S = 1, 0.05
 ALL_LANES = 0b111

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """RTPS datagrams, damaged, sent to the ports of a running pipeline: nothing crashes, hangs or grows.
 
 QUORIENT_FUZZ_DATAGRAMS: how many for each vendor (default 6000); QUORIENT_FUZZ_SEED: another run of chance.
@@ -12,9 +11,8 @@ import time
 import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "interop"))
-from foreign import InteropTest  # noqa: E402
-from harness import CONFIGURATIONS  # noqa: E402
+from integration_tests.harness.foreign import InteropTest
+from integration_tests.harness.processes import CONFIGURATIONS
 
 COUNT = int(os.environ.get("QUORIENT_FUZZ_DATAGRAMS", 6000))
 SEED = int(os.environ.get("QUORIENT_FUZZ_SEED", 1))

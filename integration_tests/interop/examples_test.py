@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """The examples of idl/examples, built with the installed IDL alone, see and drive the pipeline."""
 import json
 import os
@@ -8,8 +7,8 @@ import signal
 import unittest
 from statistics import mode
 
-from foreign import BIN, InteropTest, angle, conjugate, example, product
-from harness import CONFIGURATIONS
+from integration_tests.harness.foreign import BIN, InteropTest, angle, conjugate, example, product
+from integration_tests.harness.processes import CONFIGURATIONS
 
 LINE = re.compile(r"(\d+) (\d+) (\d+) voter (\d+) level (\d+) mode (\d+) q (\S+) (\S+) (\S+) (\S+) sigma (\S+) rad")
 FULL = 1
@@ -33,7 +32,7 @@ def samples(log):
 
 def trace_page(traces):
     page = ["# Take-over, seen by foreign subscribers\n"]
-    page.append("Made by `QUORIENT_TAKE_OVER_TRACE=integration_tests/results/take_over.md integration_tests/interop/examples_test.py "
+    page.append("Made by `QUORIENT_TAKE_OVER_TRACE=integration_tests/results/take_over.md python3 -m integration_tests.interop.examples_test "
                 "Examples.test_consumers_go_on_with_the_second_voter_when_the_first_is_killed`: the demo at 200 Hz, voter-1 (Cyclone DDS) is ended "
                 "by SIGKILL, voter-2 (Fast DDS) goes on. The consumers are those of idl/examples, without our code. A line: epoch, sequence, output "
                 "sequence, voter, level, mode, attitude, its standard deviation.\n")

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """What a foreign publisher does wrong is named in events by detectors and integrators, and ends none of them."""
 import json
 import pathlib
@@ -6,8 +5,8 @@ import re
 import signal
 import unittest
 
-from foreign import HERE, InteropTest, build
-from harness import CONFIGURATIONS
+from integration_tests.harness.foreign import INTEROP, InteropTest, build
+from integration_tests.harness.processes import CONFIGURATIONS
 
 REJECTED_INPUT, NO_MATCH, INCOMPATIBLE_QOS, UNKNOWN_REVISION = 42, 44, 45, 54
 DETECTORS = {f"fdi-{lane}" for lane in "abc"}
@@ -44,7 +43,7 @@ class ForeignPublisher(InteropTest):
         _, self.events = self.start_logged("events", *self.command("quorient", "echo", "event", "--json", "--domain", self.domain))
 
     def publish(self, mistake):
-        program = build(HERE / "wrong_publisher", "wrong_publisher")
+        program = build(INTEROP / "wrong_publisher", "wrong_publisher")
         publisher, _ = self.start_logged(f"publisher-{mistake}", program, self.domain, mistake)
         return publisher
 

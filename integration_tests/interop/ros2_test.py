@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """ROS 2 on the wire, with plain DDS nodes in ROS 2's place: they receive what our voters write, and what their IMUs write is integrated."""
 import json
 import math
@@ -8,8 +7,8 @@ import signal
 import subprocess
 import unittest
 
-from foreign import BIN, HERE, InteropTest, angle, build, conjugate, product
-from harness import CONFIGURATIONS
+from integration_tests.harness.foreign import INTEROP, InteropTest, angle, build, conjugate, product
+from integration_tests.harness.processes import CONFIGURATIONS
 
 IMU_LINE = re.compile(
     r"(\S+) (\S*) q (\S+) (\S+) (\S+) (\S+) covariance (\S+) rate (\S+) (\S+) (\S+) covariance (\S+) acceleration covariance (\S+)"
@@ -36,7 +35,7 @@ def imus(log):
 
 class Ros2Test(InteropTest):
     def node(self, vendor):
-        return build(HERE / f"ros2_node_{vendor}", f"ros2_node_{vendor}")
+        return build(INTEROP / f"ros2_node_{vendor}", f"ros2_node_{vendor}")
 
     def read(self, vendor, what, topic, profile):
         return self.start_logged(f"{what}-{vendor}-{profile}", self.node(vendor), self.domain, what, topic, profile)[1]

@@ -1,9 +1,8 @@
-#!/usr/bin/env python3
 """A dozen named cells of the kill matrix; the whole of it: run_cell.py --all."""
 import unittest
 
-from pipeline import ask_for_priority
-from run_cell import BY_NAME, attempt
+from integration_tests.harness.pipeline import ask_for_priority
+from integration_tests.kill_matrix.run_cell import BY_NAME, attempt
 
 
 class KillMatrix(unittest.TestCase):

@@ -1,14 +1,13 @@
-#!/usr/bin/env python3
-"""Kills one process of a running pipeline and judges what is left: `run_cell.py --list`, `run_cell.py NAME…`, `run_cell.py --all`."""
+"""Kills one process of a running pipeline and judges what is left: `python3 -m integration_tests.kill_matrix.run_cell --list`, `… NAME…`, `… --all`."""
 import argparse
 import itertools
 import sys
 import time
 from typing import NamedTuple
 
-from judge import judge
-from pipeline import ALL_LANES, RATE_HZ, NotInTime, Pipeline, ask_for_priority, at_least_once
-from streams import COASTING, HELD, LOST, SINGLE
+from integration_tests.harness.judge import judge
+from integration_tests.harness.pipeline import ALL_LANES, RATE_HZ, NotInTime, Pipeline, ask_for_priority, at_least_once
+from integration_tests.harness.streams import COASTING, HELD, LOST, SINGLE
 
 FAULT_S = 1.5
 FAULTY_AXIS = 1
@@ -211,7 +210,7 @@ def main():
         if options.logs:
             for name, text in logs.items():
                 print(f"--- {name}\n{text}", file=sys.stderr)
-    print(f"\n{len(cells)} cells, {failed} do not hold, {time.monotonic() - started:.0f} s; made by `{' '.join(sys.argv)}`")
+    print(f"\n{len(cells)} cells, {failed} do not hold, {time.monotonic() - started:.0f} s; made by `python3 -m integration_tests.kill_matrix.run_cell {' '.join(sys.argv[1:])}`")
     return 1 if failed else 0
 
 

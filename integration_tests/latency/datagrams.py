@@ -1,7 +1,6 @@
-#!/usr/bin/env python3
 """Counts what a pipeline and its floor send per frame, and the CPU time that it takes: in a network namespace of their own.
 
-    sudo unshare -n integration_tests/latency/datagrams.py [--rate 200]"""
+    sudo unshare -n python3 -m integration_tests.latency.datagrams [--rate 200]"""
 import argparse
 import os
 import pathlib
@@ -10,7 +9,7 @@ import subprocess
 import tempfile
 import time
 
-import run
+from integration_tests.latency import run
 
 TRANSPORTS = ("UDP, Cyclone DDS", "UDP, Fast DDS")
 START_S = 7  # Fast DDS announces itself ten times a second for five

@@ -1,9 +1,8 @@
-#!/usr/bin/env python3
 """Measures the latency of real pipelines beside their floors, in turns, and writes JSON and a table.
 
-    sudo nice -n -15 integration_tests/latency/run.py            # everything, at most 20 minutes
-    integration_tests/latency/run.py --quick                     # everything once and short: does it work?
-    integration_tests/latency/run.py --only hops,transports --rounds 1 --seconds 1
+    sudo nice -n -15 python3 -m integration_tests.latency.run            # everything, at most 20 minutes
+    python3 -m integration_tests.latency.run --quick                     # everything once and short: does it work?
+    python3 -m integration_tests.latency.run --only hops,transports --rounds 1 --seconds 1
 
 Every ratio is of runs of one round, which stand beside each other in time; of the rounds the median counts."""
 import argparse
@@ -18,7 +17,7 @@ import sys
 import tempfile
 import time
 
-import table
+from integration_tests.latency import table
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
@@ -336,7 +335,7 @@ def machine(options):
     return {
         "processor": model, "cores": os.cpu_count(), "kernel": platform.release(), "load_before": os.getloadavg(), "nice": os.nice(0),
         "versions": {name: version(package) for name, package in (("Fast DDS", "libfastrtps2.9"), ("Cyclone DDS", "cyclonedds-dev"), ("iceoryx", "iceoryx"))},
-        "rounds": options.rounds, "seconds": options.seconds, "command": " ".join(["integration_tests/latency/run.py", *sys.argv[1:]]),
+        "rounds": options.rounds, "seconds": options.seconds, "command": " ".join(["python3 -m integration_tests.latency.run", *sys.argv[1:]]),
         "date": time.strftime("%Y-%m-%d", time.gmtime()),
     }
 

@@ -1,12 +1,9 @@
 """Hosts that are network namespaces, joined by bridges in a namespace of their own. Nothing touches the machine's own network."""
 import contextlib
 import os
-import pathlib
 import subprocess
-import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "processes"))
-from harness import BIN  # noqa: E402
+from integration_tests.harness.processes import BIN
 
 SWITCH = "switch"
 

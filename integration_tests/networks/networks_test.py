@@ -1,10 +1,9 @@
-#!/usr/bin/env python3
 """Three cells on hosts that are network namespaces; all of them: run_cell.py --all."""
 import unittest
 
-from run_cell import BY_NAME, attempt  # imported first: it puts the kill matrix on the path
-from hosts import not_permitted
-from pipeline import ask_for_priority
+from integration_tests.networks.run_cell import BY_NAME, attempt
+from integration_tests.networks.hosts import not_permitted
+from integration_tests.harness.pipeline import ask_for_priority
 
 RATE_HZ = 50  # at the 200 Hz of run_cell.py a slow machine that simulates four hosts is busy without a pause
 REASON = not_permitted()

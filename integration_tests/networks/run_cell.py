@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Spoils the network between the hosts of a running pipeline and judges what is left: `--list`, NAME…, `--all`."""
 import argparse
 import signal
@@ -6,12 +5,12 @@ import sys
 import time
 from typing import Callable, NamedTuple
 
-from hosts import Hosts, not_permitted
-from load import Load
-from spread_pipeline import Place, SpreadPipeline  # imported first: it puts the kill matrix on the path
-from judge import Figures, judge
-from pipeline import ALL_LANES, RATE_HZ, NotInTime, ask_for_priority, at_least_once, rate_between
-from streams import DEGRADED, HELD, SINGLE
+from integration_tests.networks.hosts import Hosts, not_permitted
+from integration_tests.networks.load import Load
+from integration_tests.networks.spread_pipeline import Place, SpreadPipeline
+from integration_tests.harness.judge import Figures, judge
+from integration_tests.harness.pipeline import ALL_LANES, RATE_HZ, NotInTime, ask_for_priority, at_least_once, rate_between
+from integration_tests.harness.streams import DEGRADED, HELD, SINGLE
 
 FAULTY_AXIS = 1
 FINAL_ERROR_RAD = 1e-5
@@ -242,7 +241,7 @@ def main():
         if options.logs:
             for name, text in outcome.logs.items():
                 print(f"--- {name}\n{text}", file=sys.stderr)
-    print(f"\n{len(cells)} cells, {failed} do not hold, {time.monotonic() - started:.0f} s; made by `{' '.join(sys.argv)}`")
+    print(f"\n{len(cells)} cells, {failed} do not hold, {time.monotonic() - started:.0f} s; made by `python3 -m integration_tests.networks.run_cell {' '.join(sys.argv[1:])}`")
     return 1 if failed else 0
 
 

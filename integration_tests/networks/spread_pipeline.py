@@ -3,13 +3,11 @@ import os
 import pathlib
 import shutil
 import subprocess
-import sys
 import tempfile
 from typing import NamedTuple
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "kill_matrix"))
-from pipeline import BIN, CONFIGURATIONS, END_OF_GRACE_FRAMES, Pipeline  # noqa: E402
-from streams import Recording, parse_truth, parse_voted  # noqa: E402
+from integration_tests.harness.pipeline import BIN, CONFIGURATIONS, END_OF_GRACE_FRAMES, Pipeline
+from integration_tests.harness.streams import Recording, parse_truth, parse_voted
 
 DOMAIN = 60  # namespaces keep runs apart
 

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """How an attitude begins, and begins again: levelled, stated by command, lost with its publisher."""
 import json
 import math
@@ -9,7 +8,7 @@ import struct
 import subprocess
 import unittest
 
-from harness import CONFIGURATIONS, DATA, ProcessTest
+from integration_tests.harness.processes import CONFIGURATIONS, DATA, ProcessTest
 
 RECORDING = DATA / "mimu4444_carlsson/exp_1/data.bin"
 NORMAL, LOST = 2, 5  # AttitudeMode

@@ -1,9 +1,8 @@
-#!/usr/bin/env python3
 """Input that must not hurt: each a clear error before anything starts, or a counted rejection."""
 import json
 import unittest
 
-from harness import CONFIGURATIONS, DATA, ProcessTest
+from integration_tests.harness.processes import CONFIGURATIONS, DATA, ProcessTest
 
 RECORDING = DATA / "mimu4444_carlsson/exp_1/data.bin"
 DEMO = (CONFIGURATIONS / "demo.yaml").read_text()

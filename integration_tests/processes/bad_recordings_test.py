@@ -1,10 +1,9 @@
-#!/usr/bin/env python3
 """Recordings that must not hurt: an error with its place, or refusals that are counted while the rest is played."""
 import json
 import struct
 import unittest
 
-from harness import CONFIGURATIONS, DATA, ProcessTest
+from integration_tests.harness.processes import CONFIGURATIONS, DATA, ProcessTest
 
 RECORDING = DATA / "mimu4444_carlsson/exp_1/data.bin"
 FLIGHT = sorted((DATA / "ansfl_quadrotor_4xDOT/StraightLine/RAW").glob("*_1114*.csv"))

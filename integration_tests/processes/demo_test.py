@@ -1,8 +1,7 @@
-#!/usr/bin/env python3
 """The demos as a user starts them, and their twins without the fault."""
 import unittest
 
-from harness import CONFIGURATIONS, DATA, ProcessTest
+from integration_tests.harness.processes import CONFIGURATIONS, DATA, ProcessTest
 
 RECORDING = DATA / "mimu4444_carlsson/exp_1/data.bin"
 

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """The verbs that look at a running system and give it orders."""
 import json
 import shutil
@@ -6,7 +5,7 @@ import signal
 import subprocess
 import unittest
 
-from harness import CONFIGURATIONS, ProcessTest
+from integration_tests.harness.processes import CONFIGURATIONS, ProcessTest
 
 
 class LiveVerbs(ProcessTest):

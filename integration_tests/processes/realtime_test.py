@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """A service that is refused the priority, locked memory or processors it asks for reports that once and goes on without."""
 import os
 import resource
@@ -6,7 +5,7 @@ import shutil
 import subprocess
 import unittest
 
-from harness import BIN, CONFIGURATIONS, ProcessTest
+from integration_tests.harness.processes import BIN, CONFIGURATIONS, ProcessTest
 
 NOBODY = 65534
 NO_SUCH_PROCESSOR = 1023

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """quorient replay: the whole system offline, the same bytes on every run."""
 import itertools
 import json
@@ -9,7 +8,7 @@ import subprocess
 import tempfile
 import unittest
 
-from harness import BIN, CONFIGURATIONS, DATA, ProcessTest
+from integration_tests.harness.processes import BIN, CONFIGURATIONS, DATA, ProcessTest
 
 RECORDING = DATA / "mimu4444_carlsson/exp_1/data.bin"
 OTHER_RECORDING = DATA / "mimu4444_carlsson/exp_2/data.bin"

@@ -1,11 +1,10 @@
-#!/usr/bin/env python3
 """The notify protocol of systemd, with a stand-in for systemd."""
 import os
 import signal
 import socket
 import unittest
 
-from harness import CONFIGURATIONS, ProcessTest
+from integration_tests.harness.processes import CONFIGURATIONS, ProcessTest
 
 
 class ServiceManager(ProcessTest):

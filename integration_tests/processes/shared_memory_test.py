@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shared memory: it is really in use, seen from outside; its loss and absence are reported; files of killed processes do no harm."""
 import contextlib
 import json
@@ -12,7 +11,7 @@ import subprocess
 import time
 import unittest
 
-from harness import CONFIGURATIONS, ProcessTest
+from integration_tests.harness.processes import CONFIGURATIONS, ProcessTest
 
 DEMO = CONFIGURATIONS / "demo.yaml"
 UDP, SHARED_MEMORY, ICEORYX = 2, 3, 4  # codes of ServiceStatus.transport (common/messages)

@@ -1,9 +1,8 @@
-#!/usr/bin/env python3
 """The unmanned vessel as processes: publisher, two detectors on two vendors, verdicts and events; and its twins."""
 import subprocess
 import unittest
 
-from harness import CONFIGURATIONS, ROOT, ProcessTest
+from integration_tests.harness.processes import CONFIGURATIONS, ROOT, ProcessTest
 
 VESSEL = CONFIGURATIONS / "vessel.yaml"
 SPEED = 4  # 80 s of the scenario in 20 s

@@ -1,21 +1,18 @@
-#!/usr/bin/env python3
 """Kills and faults at random, with a seed, and checks what the pipeline promises all the time.
 
-`integration_tests/soak --minutes 10` from the source root, on the release build. Exits 0 only if every invariant held. The seed is
+`python3 -m integration_tests.soak --minutes 10` from the source root, on the release build. Exits 0 only if every invariant held. The seed is
 printed; with --seed the same kills and faults come in the same order."""
 import argparse
-import pathlib
 import random
 import signal
 import sys
 import time
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "kill_matrix"))
-from judge import disordered, errors, first_judged, gaps, missing_frames  # noqa: E402
-from pipeline import ALL_LANES, RATE_HZ, NotInTime, Pipeline, ask_for_priority, at_least_once, rate_between  # noqa: E402
-from resources import memory_and_descriptors  # noqa: E402
-from streams import SINGLE  # noqa: E402
-from witness import until_held  # noqa: E402
+from integration_tests.harness.judge import disordered, errors, first_judged, gaps, missing_frames
+from integration_tests.harness.pipeline import ALL_LANES, RATE_HZ, NotInTime, Pipeline, ask_for_priority, at_least_once, rate_between
+from integration_tests.harness.resources import memory_and_descriptors
+from integration_tests.harness.streams import SINGLE
+from integration_tests.harness.witness import until_held
 
 AXES = 4
 # All by the vector predictor: the modulus predictor of the demo's third lane rightly calls some faults ambiguous, and stays there.

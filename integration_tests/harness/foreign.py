@@ -6,11 +6,9 @@ import os
 import pathlib
 import signal
 import subprocess
-import sys
 
-HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "processes"))
-from harness import BIN, ProcessTest  # noqa: E402
+INTEROP = pathlib.Path(__file__).resolve().parent.parent / "interop"
+from integration_tests.harness.processes import BIN, ProcessTest
 
 BUILD = pathlib.Path(os.environ.get("QUORIENT_BUILD", BIN.parent))
 # Kept between runs, so that only what changed is built again.

@@ -10,9 +10,8 @@ import sys
 import tempfile
 import time
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "processes"))
-from harness import BIN, CONFIGURATIONS  # noqa: E402
-from streams import Recording, parse_truth, parse_voted  # noqa: E402
+from integration_tests.harness.processes import BIN, CONFIGURATIONS
+from integration_tests.harness.streams import Recording, parse_truth, parse_voted
 
 RATE_HZ = 200
 ALL_LANES = 0b111

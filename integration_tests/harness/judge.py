@@ -1,7 +1,7 @@
 """Figures of a run, from the recorded topics and the simulator's truth."""
 from dataclasses import dataclass, field
 
-from streams import HELD, angle
+from integration_tests.harness.streams import HELD, angle
 
 
 @dataclass

@@ -8,7 +8,7 @@ import tempfile
 import time
 import unittest
 
-from witness import until_held
+from integration_tests.harness.witness import until_held
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 BIN = pathlib.Path(os.environ.get("QUORIENT_BIN", ROOT / "build/release/bin"))
