@@ -25,6 +25,7 @@ fdi::DetectorSettings with_tolerance(const char* name, double tolerance)
     fdi::DetectorSettings settings = named(name);
     settings.tolerance = tolerance;
     settings.max_faults = 2;
+    settings.bare = true;  // the published rates are those of the bare rules
     return settings;
 }
 

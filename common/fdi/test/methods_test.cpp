@@ -299,8 +299,14 @@ TEST(Invariants, relaxed_take_the_best_quadruple_where_the_strict_rule_refuses)
     const auto strict = InvariantsDetector::make(settings, cluster_named("guaranteed-cone")).value();
     settings.relaxed = true;
     const auto relaxed = InvariantsDetector::make(settings, cluster_named("guaranteed-cone")).value();
+    settings.bare = true;
+    const auto bare = InvariantsDetector::make(settings, cluster_named("guaranteed-cone")).value();
     EXPECT_EQ(assess(*strict, z).outcome, Outcome::refused);
-    EXPECT_EQ(assess(*relaxed, z).isolated, axis_bit(1) | axis_bit(2));
+    EXPECT_EQ(assess(*bare, z).isolated, axis_bit(1) | axis_bit(2));
+    const auto rivalled = assess(*relaxed, z);  // the second quadruple that passes stands for a rival
+    EXPECT_EQ(rivalled.outcome, Outcome::ambiguous);
+    EXPECT_EQ(rivalled.candidate_count, 2);
+    EXPECT_EQ(rivalled.isolated, 0U);
 }
 
 TEST(Invariants, relaxed_refuse_where_even_the_best_quadruple_fails)

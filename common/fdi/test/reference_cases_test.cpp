@@ -160,7 +160,9 @@ TEST(ReferenceCases, invariants_voting_and_mean_decide_as_the_independent_comput
         expect_decision(expected["voting"], assess(*voting, z));
         EXPECT_EQ(voting->passed_count(), expected["n_pass_voting"].get<std::size_t>());
 
-        const auto mean = MeanDetector::make(with_tolerance(input["T_mean_sqrtSSE"].get<double>()), cluster).value();
+        auto mean_settings = with_tolerance(input["T_mean_sqrtSSE"].get<double>());
+        mean_settings.bare = true;
+        const auto mean = MeanDetector::make(mean_settings, cluster).value();
         const auto assessment = assess(*mean, z);
         if (expected["mean_unresolved_after_2"].get<bool>()) EXPECT_EQ(assessment.outcome, Outcome::refused);
         else expect_decision(expected["mean"], assessment);

@@ -48,6 +48,7 @@ void parse_detection(Section section, const System& system, DetectorProcess& det
     section.number("motion_noise", detection.motion_noise, runtime::above_zero);
     section.boolean("instruments", detection.instruments);
     section.boolean("relaxed", detection.relaxed);
+    section.boolean("bare", detection.bare);
     parse_verdict(section, detector.verdict);
     if (!fdi::find_method(detection.method)) {
         std::vector<std::string_view> names;

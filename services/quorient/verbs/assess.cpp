@@ -133,6 +133,7 @@ void add_method_options(Verb& verb, AssessOptions& options)
     verb.numbers("--direction", options.direction, 3, "guaranteed: also the interval along this body vector, as in 0,0,1");
     verb.flag("--instruments", settings.instruments, "subset: a fault takes a whole instrument");
     verb.flag("--relaxed", settings.relaxed, "invariants: where no pattern fits, leave out what the best quadruple leaves out");
+    verb.flag("--bare", settings.bare, "mean, relaxed invariants: the paper's rule as such, which does not look for rivals");
 }
 
 }  // namespace

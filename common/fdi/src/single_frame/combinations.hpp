@@ -15,6 +15,9 @@ struct MaskMembers {
             if (has_axis(mask, axis)) item[count++] = static_cast<std::uint8_t>(axis);
     }
 
+    const std::uint8_t* begin() const { return item.data(); }
+    const std::uint8_t* end() const { return item.data() + count; }
+
     std::array<std::uint8_t, 32> item{};
     std::size_t count = 0;
 };

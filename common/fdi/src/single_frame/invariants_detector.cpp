@@ -48,6 +48,7 @@ InvariantsDetector::InvariantsDetector(const DetectorSettings& settings, const g
       pfa_(settings.pfa.value_or(default_false_alarm_probability)),
       max_faults_(settings.max_faults.value_or(2)),
       relaxed_(settings.relaxed),
+      bare_(settings.bare),
       sigma_(std::move(sigma))
 {
     const std::size_t most = binomial(cluster.size(), 4);
@@ -119,30 +120,51 @@ void InvariantsDetector::judge(const geometry::AxisVector& z, Assessment& assess
     Eigen::Map<Eigen::VectorXd>(assessment.residual.data(), z.size()) = projector_ * z;
 
     const auto faulty = exact_pattern(reads_, passed_, allowed_faults());
-    assessment.isolated = faulty ? *faulty : relaxed_ ? relaxed_exclusion() : 0;
-    assessment.outcome = assessment.isolated != 0 ? Outcome::isolated : faulty ? Outcome::healthy : Outcome::refused;
+    assessment.isolated = faulty.value_or(0);
+    assessment.outcome = !faulty ? Outcome::refused : *faulty == 0 ? Outcome::healthy : Outcome::isolated;
+    if (!faulty && relaxed_) relax(assessment);
 }
 
-/// The axes to leave out, or none where even the best choice fails.
-AxisMask InvariantsDetector::relaxed_exclusion() const
+/// The largest ratio |v'z| / T of the quadruples that read none of these axes; infinite where there is no such quadruple.
+double InvariantsDetector::worst_ratio_without(AxisMask without) const
+{
+    double worst = 0;
+    bool any = false;
+    for (std::size_t k = 0; k < quadruples_.size(); ++k) {
+        if ((reads_[k] & without) != 0) continue;
+        worst = std::max(worst, values_[k] / quadruples_[k].tolerance);
+        any = true;
+    }
+    return any ? worst : std::numeric_limits<double>::infinity();
+}
+
+/// The paper's relaxed rule. @returns the axes to leave out, or none where even the best choice fails.
+AxisMask InvariantsDetector::best_exclusion() const
 {
     AxisMask best = 0;
     double best_ratio = 1;
     if (allowed_faults() == 0) return 0;
     for_each_subset(working(), allowed_faults(), [&](AxisMask without) {
-        double worst = 0;
-        bool any = false;
-        for (std::size_t k = 0; k < quadruples_.size(); ++k)
-            if ((reads_[k] & without) == 0) {
-                worst = std::max(worst, values_[k] / quadruples_[k].tolerance);
-                any = true;
-            }
-        if (any && worst <= best_ratio) {
-            best = without;
-            best_ratio = worst;
-        }
+        const double worst = worst_ratio_without(without);
+        if (worst > best_ratio) return;
+        best = without;
+        best_ratio = worst;
     });
     return best;
+}
+
+void InvariantsDetector::relax(Assessment& assessment) const
+{
+    if (bare_) assessment.isolated = best_exclusion();
+    else
+        for (unsigned size = 1; size <= allowed_faults() && assessment.candidate_count == 0; ++size)
+            for_each_subset(working(), size, [&](AxisMask set) {
+                if (worst_ratio_without(set) <= 1) assessment.add_candidate(set);
+            });
+    if (assessment.candidate_count == 1) assessment.isolated = assessment.candidate[0];
+    if (assessment.isolated != 0) assessment.outcome = Outcome::isolated;
+    else if (assessment.candidate_count > 1) assessment.outcome = Outcome::ambiguous;
+    if (assessment.candidate_count == 1) assessment.candidate_count = 0;
 }
 
 std::vector<Detail> InvariantsDetector::details(const Assessment&) const

@@ -18,14 +18,16 @@ namespace quorient::fdi {
 /// the decision, see exact_pattern; any other pattern is `refused`.
 ///
 /// Relaxed: where the strict rule refuses, take the K axes without which the worst ratio |v'z| / T is smallest (K the most faults
-/// allowed: on six axes, the complement of the quadruple with the smallest ratio), and exclude them if that ratio passes.
+/// allowed: on six axes, the complement of the quadruple with the smallest ratio), and exclude them if that ratio passes. This is the
+/// paper's rule, setting `bare`. Without it, sets of one axis are tried first, then of two and so on; where several of the smallest size pass, the frame
+/// is `ambiguous` with all of them.
 ///
 /// For 6 to 24 axes; after exclusions with whatever is left. Without a tolerance, T_v is that of noise,
 /// z(1 - pfa / 2m) sqrt(sum v_i^2 sigma_i^2) over m quadruples.
 /// Not guaranteed: a refusal does not tell a third fault from noise just above T.
 class InvariantsDetector final : public FrameDetector {
 public:
-    /// Settings: tolerance (else sigma and pfa), max_faults (default 2), relaxed.
+    /// Settings: tolerance (else sigma and pfa), max_faults (default 2), relaxed, bare.
     static tl::expected<std::unique_ptr<InvariantsDetector>, std::string> make(const DetectorSettings& settings,
                                                                        const geometry::SensorCluster& cluster);
 
@@ -47,7 +49,9 @@ private:
     void form(AxisMask working) override;
     void judge(const geometry::AxisVector& z, Assessment& assessment) override;
     void set_tolerances();
-    AxisMask relaxed_exclusion() const;
+    double worst_ratio_without(AxisMask without) const;
+    AxisMask best_exclusion() const;
+    void relax(Assessment& assessment) const;
 
     unsigned allowed_faults() const;
 
@@ -55,6 +59,7 @@ private:
     double pfa_;
     unsigned max_faults_;
     bool relaxed_;
+    bool bare_;
     geometry::AxisVector sigma_;
 
     std::vector<Quadruple> quadruples_;

@@ -1,11 +1,34 @@
 #include "single_frame/mean_detector.hpp"
 
 #include "quorient/fdi/noise.hpp"
+#include "single_frame/combinations.hpp"
 
-#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <utility>
 
 namespace quorient::fdi {
+
+namespace {
+
+constexpr double unseen = 1e-9;  ///< of a diagonal element of the projector: this axis can be judged no longer
+
+/// Residual and projector of the axes that are still in the mean. [paper 002]
+struct Mean {
+    geometry::AxisVector residual;
+    geometry::AxisMatrix projector;
+    unsigned redundancy = 0;
+
+    void remove(Eigen::Index axis)
+    {
+        const geometry::AxisVector column = projector.col(axis);
+        residual -= column * (residual(axis) / column(axis));
+        projector -= column * column.transpose() / column(axis);
+        --redundancy;
+    }
+};
+
+}  // namespace
 
 tl::expected<std::unique_ptr<MeanDetector>, std::string> MeanDetector::make(const DetectorSettings& settings, const geometry::SensorCluster& cluster)
 {
@@ -22,6 +45,7 @@ MeanDetector::MeanDetector(const DetectorSettings& settings, const geometry::Sen
       configured_tolerance_(settings.tolerance.value_or(0)),
       pfa_(settings.pfa.value_or(default_false_alarm_probability)),
       max_faults_(settings.max_faults.value_or(2)),
+      bare_(settings.bare),
       sigma_(std::move(sigma)),
       parity_(cluster.axes, sigma_)
 {
@@ -51,34 +75,51 @@ void MeanDetector::judge(const geometry::AxisVector& z, Assessment& assessment)
     }
     assessment.isolated = leave_out(residual);
     assessment.outcome = assessment.isolated != 0 ? Outcome::isolated : Outcome::refused;
+    if (assessment.isolated != 0 && !bare_) list_rivals(assessment.isolated, residual, assessment);
 }
 
 /// The axes without which the mean passes; none where it does not.
 AxisMask MeanDetector::leave_out(geometry::AxisVector residual) const
 {
-    constexpr double unseen = 1e-9;
-    geometry::AxisMatrix projector = parity_.space().projector();
+    Mean mean{std::move(residual), parity_.space().projector(), parity_.redundancy()};
     AxisMask left_out = 0;
-    unsigned dof = parity_.redundancy();
-    for (unsigned removal = 0; removal < max_faults_ && dof >= 2; ++removal) {
+    for (unsigned removal = 0; removal < max_faults_ && mean.redundancy >= 2; ++removal) {
         Eigen::Index worst = -1;
         double explained = 0;
-        for (Eigen::Index axis = 0; axis < residual.size(); ++axis) {
-            const double own = projector(axis, axis);
-            if (own > unseen && residual(axis) * residual(axis) > explained * own) {
-                explained = residual(axis) * residual(axis) / own;
+        for (Eigen::Index axis = 0; axis < mean.residual.size(); ++axis) {
+            const double own = mean.projector(axis, axis);
+            if (own > unseen && mean.residual(axis) * mean.residual(axis) > explained * own) {
+                explained = mean.residual(axis) * mean.residual(axis) / own;
                 worst = axis;
             }
         }
         if (worst < 0) return 0;
         left_out |= axis_bit(static_cast<std::size_t>(worst));
-        const geometry::AxisVector column = projector.col(worst);
-        residual -= column * (residual(worst) / column(worst));
-        projector -= column * column.transpose() / column(worst);
-        --dof;
-        if (residual.norm() <= tolerance_[dof]) return left_out;
+        mean.remove(worst);
+        if (mean.residual.norm() <= tolerance_[mean.redundancy]) return left_out;
     }
     return 0;
+}
+
+/// Where another set of equal or smaller size passes as well: ambiguous, with all of these, the named one first.
+void MeanDetector::list_rivals(AxisMask named, const geometry::AxisVector& residual, Assessment& assessment) const
+{
+    assessment.add_candidate(named);
+    for (std::size_t size = 1; size <= static_cast<std::size_t>(std::popcount(named)); ++size)
+        for_each_subset(working(), size, [&](AxisMask set) {
+            Mean mean{residual, parity_.space().projector(), parity_.redundancy()};
+            for (const std::size_t axis : MaskMembers(set)) {
+                const auto member = static_cast<Eigen::Index>(axis);
+                if (mean.projector(member, member) > unseen) mean.remove(member);
+            }
+            if (set != named && mean.residual.norm() <= tolerance_[mean.redundancy]) assessment.add_candidate(set);
+        });
+    if (assessment.candidate_count == 1) {
+        assessment.candidate_count = 0;
+        return;
+    }
+    assessment.outcome = Outcome::ambiguous;
+    assessment.isolated = 0;
 }
 
 }  // namespace quorient::fdi

@@ -31,6 +31,7 @@ struct DetectorSettings {
     std::optional<GatedNoise> gated_noise{};  ///< accumulating: of the gated sums; absent: there are none
     bool instruments = false;                 ///< a fault takes a whole instrument
     bool relaxed = false;
+    bool bare = false;  ///< mean, relaxed invariants: the paper's rule as such, which does not look for rivals
 };
 
 /// From assessments to verdicts.
