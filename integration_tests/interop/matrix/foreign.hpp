@@ -12,6 +12,7 @@ struct Wish {
     bool transient_local = false;
     bool exclusive = false;  ///< a writer's with MANUAL_BY_TOPIC liveliness, as the contract has it
     int depth = 64;
+    std::uint32_t reader_lease_ns = 0;  ///< a reader asks for MANUAL_BY_TOPIC liveliness with this lease; 0: for none
     std::string partition{};
     bool other_type = false;  ///< the topic's name with another type of the IDL
 };

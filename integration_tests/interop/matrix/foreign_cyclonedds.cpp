@@ -101,6 +101,7 @@ private:
         dds_qset_durability_service(qos, 0, DDS_HISTORY_KEEP_LAST, wish.depth, -1, -1, -1);
         if (wish.exclusive) dds_qset_ownership(qos, DDS_OWNERSHIP_EXCLUSIVE);
         if (wish.exclusive && writes) dds_qset_liveliness(qos, DDS_LIVELINESS_MANUAL_BY_TOPIC, DDS_MSECS(50));
+        if (wish.reader_lease_ns > 0 && !writes) dds_qset_liveliness(qos, DDS_LIVELINESS_MANUAL_BY_TOPIC, wish.reader_lease_ns);
         const auto& type = wish.other_type ? quorient_msgs_AttitudeState_desc : quorient_msgs_VotedAttitude_desc;
         const auto topic = made(dds_create_topic(participant_, &type, topic_name.c_str(), nullptr, nullptr), "topic");
         const auto endpoint =

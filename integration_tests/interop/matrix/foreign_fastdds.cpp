@@ -112,6 +112,10 @@ private:
         subscriber_ = checked(participant_->create_subscriber(group));
         DataReaderQos qos;
         apply(wish, qos);
+        if (wish.reader_lease_ns > 0) {
+            qos.liveliness().kind = MANUAL_BY_TOPIC_LIVELINESS_QOS;
+            qos.liveliness().lease_duration = {0, wish.reader_lease_ns};
+        }
         reader_ = checked(subscriber_->create_datareader(topic_, qos));
     }
 

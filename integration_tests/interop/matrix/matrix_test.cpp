@@ -46,6 +46,12 @@ const std::vector<Scenario> scenarios{
     {"transient-local writer, volatile late joiner", {.transient_local = true}, {}, Case::late_volatile, "delivers"},
     {"volatile writer, transient-local reader", {}, {.transient_local = true}, Case::plain, "incompatible: DURABILITY"},
     {"exclusive writer, exclusive reader", {.exclusive = true}, {.exclusive = true}, Case::plain, "delivers"},
+    // 50 ms as the wire's binary fraction and back, rounded down: 214748364 / 2^32 s.
+    {"exclusive writer, exclusive reader that asks for the stated lease, rounded down",
+     {.exclusive = true},
+     {.exclusive = true, .reader_lease_ns = 49'999'999},
+     Case::plain,
+     "delivers"},
     {"exclusive writer, shared reader", {.exclusive = true}, {}, Case::plain, "incompatible: OWNERSHIP"},
     // Our exclusive reader on Fast DDS asks for liveliness MANUAL_BY_TOPIC too; which of the two is reported is the vendor's choice.
     {"shared writer, exclusive reader", {}, {.exclusive = true}, Case::plain, "incompatible: OWNERSHIP or incompatible: LIVELINESS"},

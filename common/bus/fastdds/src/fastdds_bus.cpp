@@ -243,7 +243,7 @@ private:
         if (topic.qos.exclusive) {
             qos.ownership_strength().value = static_cast<std::uint32_t>(options.strength);
             qos.liveliness().kind = dds::MANUAL_BY_TOPIC_LIVELINESS_QOS;
-            qos.liveliness().lease_duration = seconds(options.lease_s);
+            qos.liveliness().lease_duration = seconds(offered_lease_s(options.lease_s));
             qos.liveliness().announcement_period = seconds(options.lease_s / 2);
         }
         auto [type, entity] = topic_of(topic);

@@ -16,7 +16,15 @@ struct Qos {
 /// What is known only when a system is put together.
 struct WriterOptions {
     std::int32_t strength = 0;  ///< ownership strength of an exclusive writer
-    double lease_s = 0.05;      ///< liveliness lease of an exclusive writer
+    double lease_s = 0.05;      ///< liveliness lease of an exclusive writer, as the contract states it
 };
+
+/// The lease that goes on the wire [s]: a little shorter, since a lease travels as a binary fraction. A reader that asks for exactly the stated
+/// lease is then accepted, whichever way either vendor rounds.
+constexpr double offered_lease_s(double lease_s)
+{
+    constexpr double margin_s = 1e-4;
+    return lease_s - margin_s;
+}
 
 }  // namespace quorient::bus
