@@ -105,6 +105,21 @@ class Examples(InteropTest):
                 self.assertEqual(mode(sample.level for sample in stream), FULL)
         self.assertEqual({verdict["isolated_mask"] for verdict in verdicts}, {0})
 
+    def test_launch_without_its_sensor_serves_a_publisher_of_ones_own(self):
+        axes, recording, truth = self.record("--duration", 4, "--fault", "axis=1,kind=scale,value=0.8,start=2")
+        pipeline, said = self.start_logged(
+            "launch", BIN / "quorient", "launch", CONFIGURATIONS / "demo.yaml", "--without", "sensor", "--domain", self.domain, "--json",
+            "--set", "expect=null",
+        )
+        publisher, _ = self.start_logged("publisher", example("publisher_cyclonedds"), self.domain, axes, recording, 6)
+        self.assertEqual(publisher.wait(60), 0)
+        last = lambda: self.echo("voter_output", 1)[0]["sequence_number"]  # noqa: E731
+        self.eventually(lambda: last() == len(truth) - 1, "the last frame is voted")
+        pipeline.send_signal(signal.SIGTERM)
+        self.assertEqual(pipeline.wait(20), 0, said.read_text())
+        summary = json.loads(said.read_text())
+        self.assertEqual({name: lane["isolated"] for name, lane in summary["lanes"].items()}, {"a": [1], "b": [1], "c": [1]})
+
     def test_a_fault_in_the_recording_is_isolated_and_the_consumers_keep_the_attitude(self):
         truth, streams, verdicts = self.play("--fault", "axis=1,kind=scale,value=0.8,start=2")
         for name, stream in streams.items():

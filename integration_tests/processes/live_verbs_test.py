@@ -54,6 +54,16 @@ class LiveVerbs(ProcessTest):
     def test_readmit_of_a_healthy_axis_is_refused(self):
         self.assertEqual(self.run_program("quorient", "readmit", "--axis", 0, "--domain", self.domain).returncode, 1)
 
+    def test_a_second_launch_of_the_same_system_is_refused(self):
+        again = self.run_program("quorient", "launch", CONFIGURATIONS / "demo.yaml", "--domain", self.domain)
+        self.assertEqual(again.returncode, 2, again.stdout + again.stderr)
+        for expected in ("fdi-a", "voter-1", "sensor", "already run", f"domain {self.domain}", "--join"):
+            self.assertIn(expected, again.stderr)
+        self.assertIsNone(self.pipeline.poll(), "the first one goes on")
+        unknown = self.run_program("quorient", "launch", CONFIGURATIONS / "demo.yaml", "--domain", self.domain, "--without", "sensors")
+        self.assertEqual(unknown.returncode, 2)
+        self.assertIn("no such process; it has voter-1", unknown.stderr)
+
     def test_status_names_every_service_and_its_transport(self):
         result = self.run_program("quorient", "status", "--domain", self.domain, "--json")
         services = {service["name"]: service for service in json.loads(result.stdout)["services"]}

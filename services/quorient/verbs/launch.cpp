@@ -11,11 +11,13 @@
 #include "verbs.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <thread>
 
 namespace quorient::cli {
@@ -30,7 +32,15 @@ constexpr std::int64_t linger_ns = second_ns;
 struct LaunchOptions {
     SystemOptions system;
     std::optional<double> duration_s;
+    std::vector<std::string> without;
+    bool join = false;
     bool json = false;
+};
+
+/// A service's program and the name of its process in the system file.
+struct Started {
+    const char* service;
+    std::string name;
 };
 
 /// Children leave heartbeats and logs; /run/quorient belongs to root.
@@ -51,28 +61,63 @@ std::string program(const char* name)
     return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / name).string();
 }
 
-void add_processes(const system::System& system, const SystemOptions& options, launch::Processes& processes)
+std::vector<Started> processes_of(const system::System& system)
+{
+    std::vector<Started> all;
+    for (const auto& voter : system.voters) all.push_back({"quorient-voter", voter.process.node.name});
+    for (const auto& lane : system.lanes) {
+        if (system.has_attitude()) all.push_back({"quorient-attitude", lane.integrator.process.node.name});
+        all.push_back({"quorient-fdi", lane.detector.process.node.name});
+    }
+    all.push_back({"quorient-sensor", system.sensor.process.node.name});
+    return all;
+}
+
+/// Those that this launch starts. Explains a name that the system does not have on stderr, and ends the verb.
+std::vector<Started> chosen_processes(const system::System& system, const std::vector<std::string>& without)
+{
+    auto chosen = processes_of(system);
+    for (const auto& name : without) {
+        if (std::erase_if(chosen, [&](const Started& process) { return process.name == name; }) > 0) continue;
+        std::string known;
+        for (const auto& process : processes_of(system)) known += (known.empty() ? "" : ", ") + process.name;
+        fail(fmt::format("--without {}: the system has no such process; it has {}", name, known));
+    }
+    return chosen;
+}
+
+void add_processes(const std::vector<Started>& chosen, const SystemOptions& options, launch::Processes& processes)
 {
     const auto run_directory = runtime::run_directory();
-    const auto add = [&](const char* service, const std::string& name) {
+    for (const auto& [service, name] : chosen) {
         std::vector<std::string> command{program(service), options.file, "--name", name};
         if (!options.dds.empty()) command.insert(command.end(), {"--dds", options.dds});
         if (options.domain) command.insert(command.end(), {"--domain", std::to_string(*options.domain)});
         for (const auto& assignment : options.assignments()) command.insert(command.end(), {"--set", assignment});
         processes.add(name, std::move(command), (run_directory / (name + ".log")).string());
-    };
-    for (const auto& voter : system.voters) add("quorient-voter", voter.process.node.name);
-    for (const auto& lane : system.lanes) {
-        if (system.has_attitude()) add("quorient-attitude", lane.integrator.process.node.name);
-        add("quorient-fdi", lane.detector.process.node.name);
     }
-    add("quorient-sensor", system.sensor.process.node.name);
+}
+
+/// Those of these processes that run already: their events, which late joiners get, arrive while this waits.
+std::set<std::string> already_running(const std::vector<Started>& chosen, std::uint32_t unit, bus::Bus& bus)
+{
+    constexpr auto discovery = std::chrono::milliseconds{500};
+    auto events = bus.subscribe(bus::topics::event);
+    std::set<std::string> running;
+    HealthEvent event;
+    for (const auto deadline = std::chrono::steady_clock::now() + discovery; std::chrono::steady_clock::now() < deadline;
+         bus.wait(second_ns / 50))
+        while (events.take(event)) {
+            const std::string_view source = text_of(event.source_name);
+            if (event.unit == unit && std::ranges::find(chosen, source, &Started::name) != chosen.end()) running.emplace(source);
+        }
+    return running;
 }
 
 /// One run from start to summary.
 class Run {
 public:
-    Run(const LaunchOptions& options, const system::System& system, bus::Bus& bus)
+    Run(const LaunchOptions& options, const std::vector<Started>& chosen, const system::System& system, bus::Bus& bus)
         : options_(options),
           system_(system),
           observer_(system),
@@ -88,7 +133,7 @@ public:
         loop_.on(bus.subscribe(bus::topics::event), [this](const HealthEvent& m) { screen_.on_event(m); });
         prepare_run_directory();
         roudi_problem_ = roudi_.start(system, processes_);
-        add_processes(system, options.system, processes_);
+        add_processes(chosen, options.system, processes_);
     }
 
     int run()
@@ -163,7 +208,14 @@ int launch_system(const LaunchOptions& options)
         fmt::print(stderr, "{}\n", bus.error());
         return 2;
     }
-    return Run{options, system, **bus}.run();
+    const auto chosen = chosen_processes(system, options.without);
+    if (!options.join) {
+        const auto running = already_running(chosen, system.unit, **bus);
+        if (!running.empty())
+            fail(fmt::format("of unit {}, {} already run on domain {}: stop them, choose another --domain, or give --join", system.unit,
+                             fmt::join(running, ", "), system.monitor.bus.domain));
+    }
+    return Run{options, chosen, system, **bus}.run();
 }
 
 }  // namespace
@@ -175,6 +227,9 @@ void add_launch(Program& program)
     auto options = std::make_shared<LaunchOptions>();
     options->system.add_to(verb);
     verb.option("--duration", options->duration_s, "Stop after so many seconds; else when the source ends").value_name("S");
+    verb.option("--without", options->without, "Do not start this process: it runs elsewhere, or a program of yours stands for it (repeatable)")
+        .value_name("NAME");
+    verb.flag("--join", options->join, "Start although processes of these names run on this domain already");
     verb.flag("--json", options->json, "The summary as JSON, nothing else on stdout");
     verb.footer(
         "Exit code 1 if the file's `expect` is not met.\nExample:\n  quorient launch deploy/configurations/demo.yaml --dds fastdds");
