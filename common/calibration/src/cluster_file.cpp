@@ -1,29 +1,27 @@
 #include "quorient/calibration/cluster_file.hpp"
 
+#include "quorient/configuration/document.hpp"
+#include "quorient/configuration/table.hpp"
+#include "quorient/geometry/sensor_cluster.hpp"
+#include "quorient/messages/codes.hpp"
 #include "quorient/messages/meaning.hpp"
 #include "quorient/messages/name.hpp"
 
-#include "quorient/geometry/sensor_cluster.hpp"
-#include "quorient/messages/codes.hpp"
-
 #include <fmt/format.h>
-#include <yaml-cpp/yaml.h>
 #include <algorithm>
-#include <cmath>
-#include <fstream>
+#include <array>
 #include <optional>
-#include <sstream>
 #include <string_view>
 #include <vector>
 
 namespace quorient::calibration {
+
+using namespace configuration;
 namespace {
 
-constexpr std::array<std::string_view, 6> top_keys{"name", "kind", "interval_s", "origin", "motion_noise", "axes"};
-constexpr std::array<std::string_view, 4> noise_keys{"along_s", "across_s", "level", "gated"};
-constexpr std::array<std::string_view, 4> gated_keys{"along_s", "across_s", "axes", "rate"};
-constexpr std::array<std::string_view, 9> axis_keys{"instrument", "direction",   "gain",        "bias_rad_s", "bias_spread_rad_s",
-                                                    "sigma_rad",  "quantum_rad", "range_rad_s", "position_m"};
+using settings::not_negative;
+
+constexpr std::size_t longest_origin = 1000;
 
 std::string triple(const std::array<double, 3>& values)
 {
@@ -39,82 +37,6 @@ std::string noise_text(const CalibratedCluster& cluster)
                             gated->jitter_across_s, gated->axes_error, gated->rate_error);
     return text + "}";
 }
-
-/// Reads nodes and gathers what is wrong with them.
-class Reading {
-public:
-    explicit Reading(std::string name) : name_(std::move(name)) {}
-
-    void problem(const YAML::Mark& mark, std::string_view what)
-    {
-        const bool placed = mark.line >= 0;
-        problems_.push_back(placed ? fmt::format("{}:{}:{}: {}", name_, mark.line + 1, mark.column + 1, what)
-                                   : fmt::format("{}: {}", name_, what));
-    }
-
-    template <std::size_t Count>
-    bool is_map_of(const YAML::Node& node, const std::array<std::string_view, Count>& keys)
-    {
-        if (!node.IsMap()) {
-            problem(node.Mark(), fmt::format("expected keys and values; known are {}", fmt::join(keys, ", ")));
-            return false;
-        }
-        for (const auto& entry : node) {
-            const auto key = entry.first.IsScalar() ? entry.first.Scalar() : std::string("?");
-            if (std::find(keys.begin(), keys.end(), key) == keys.end())
-                problem(entry.first.Mark(), fmt::format("unknown key '{}'; known are {}", key, fmt::join(keys, ", ")));
-        }
-        return true;
-    }
-
-    std::optional<double> number(const YAML::Node& value)
-    {
-        double result = 0;
-        if (value.IsScalar() && YAML::convert<double>::decode(value, result) && std::isfinite(result)) return result;
-        problem(value.Mark(), "expected a finite number");
-        return std::nullopt;
-    }
-
-    void number(const YAML::Node& map, const char* key, double& result, double lowest = -1e300, bool required = true)
-    {
-        const YAML::Node value = map[key];
-        if (!value) {
-            if (required) problem(map.Mark(), fmt::format("'{}' is missing", key));
-            return;
-        }
-        const auto read = number(value);
-        if (!read) return;
-        if (*read < lowest) problem(value.Mark(), fmt::format("{} must be at least {:g}, got {:g}", key, lowest, *read));
-        result = *read;
-    }
-
-    void triple(const YAML::Node& map, const char* key, std::array<double, 3>& result, bool required)
-    {
-        const YAML::Node value = map[key];
-        if (!value) {
-            if (required) problem(map.Mark(), fmt::format("'{}' is missing", key));
-            return;
-        }
-        if (!value.IsSequence() || value.size() != 3) return problem(value.Mark(), fmt::format("{} must be [x, y, z]", key));
-        for (std::size_t i = 0; i < 3; ++i) result[i] = number(value[i]).value_or(0);
-    }
-
-    std::string text(const YAML::Node& map, const char* key, std::size_t longest)
-    {
-        const YAML::Node value = map[key];
-        if (!value) return {};
-        if (value.IsScalar() && value.Scalar().size() <= longest) return value.Scalar();
-        problem(value.Mark(), fmt::format("{} must be a text of at most {} bytes", key, longest));
-        return {};
-    }
-
-    std::string report() const { return fmt::format("{}", fmt::join(problems_, "\n")); }
-    bool good() const { return problems_.empty(); }
-
-private:
-    std::string name_;
-    std::vector<std::string> problems_;
-};
 
 template <std::size_t Size>
 void set_name(Name<Size>& name, std::string_view text)
@@ -132,47 +54,166 @@ std::uint8_t instrument_number(ClusterDescription& description, std::string_view
     return description.instrument_count++;
 }
 
-void read_noise(Reading& reading, const YAML::Node& noise, CalibratedCluster& cluster)
+/// One of `axes`.
+struct AxisSection {
+    std::string instrument;
+    std::array<double, 3> direction{};
+    std::array<double, 3> position_m{};
+    double gain = 1;
+    double bias_rad_s = 0;
+    double bias_spread_rad_s = 0;
+    double sigma_rad = 0;
+    double quantum_rad = 0;
+    double range_rad_s = 0;
+};
+
+/// `motion_noise`.
+struct NoiseSection {
+    double along_s = 0;
+    double across_s = 0;
+    double level = 0;
+    std::optional<fdi::GatedNoise> gated;
+};
+
+struct ClusterSection {
+    std::string name;
+    SensorKind kind = SensorKind::gyro;
+    double interval_s = 0;
+    std::string origin;
+    std::optional<NoiseSection> motion_noise;
+    std::vector<AxisSection> axes;
+};
+
+const Table<AxisSection>& axis_table()
 {
-    if (!noise || !reading.is_map_of(noise, noise_keys)) return;
-    reading.number(noise, "along_s", cluster.jitter_along_s, 0);
-    reading.number(noise, "across_s", cluster.jitter_across_s, 0);
-    reading.number(noise, "level", cluster.motion_level, 0, false);
-    const YAML::Node gated = noise["gated"];
-    if (!gated || !reading.is_map_of(gated, gated_keys)) return;
-    fdi::GatedNoise& terms = cluster.gated.emplace();
-    reading.number(gated, "along_s", terms.jitter_along_s, 0);
-    reading.number(gated, "across_s", terms.jitter_across_s, 0);
-    reading.number(gated, "axes", terms.axes_error, 0);
-    reading.number(gated, "rate", terms.rate_error, 0);
+    static constexpr std::array<settings::Setting<AxisSection>, 6> figures{{
+        {"gain", &AxisSection::gain, "", {.lowest = 0.1}, "Gain of the raw measurement."},
+        {"bias_rad_s", &AxisSection::bias_rad_s, "rad/s", {}, "Bias of the raw measurement."},
+        {"sigma_rad", &AxisSection::sigma_rad, "rad", not_negative, "Standard deviation of one corrected increment."},
+        {"bias_spread_rad_s", &AxisSection::bias_spread_rad_s, "rad/s", not_negative, "Standard deviation of the bias between recordings."},
+        {"quantum_rad", &AxisSection::quantum_rad, "rad", not_negative, "The step in which the sensor counts; 0 = none."},
+        {"range_rad_s", &AxisSection::range_rad_s, "rad/s", not_negative, "0 = none stated."},
+    }};
+    static const auto rows = record<AxisSection>(figures);
+    static const Table<AxisSection> table{
+        "One axis.",
+        {required(value({.name = "instrument", .sentence = "Name, up to 16 bytes."}, &AxisSection::instrument)),
+         required(value({.name = "direction", .sentence = "Unit vector in the body frame."}, &AxisSection::direction)),
+         value({.name = "position_m", .unit = "m", .sentence = "Place in the body frame."}, &AxisSection::position_m),
+         required(chosen(rows, {"gain", "bias_rad_s", "sigma_rad"})), chosen(rows, {"bias_spread_rad_s", "quantum_rad", "range_rad_s"})}};
+    return table;
 }
 
-void read_axis(Reading& reading, const YAML::Node& node, std::size_t axis, CalibratedCluster& cluster)
+const Table<NoiseSection>& noise_table()
 {
-    if (!reading.is_map_of(node, axis_keys)) return;
+    using fdi::GatedNoise;
+    static constexpr std::array<settings::Setting<GatedNoise>, 4> gated{{
+        {"along_s", &GatedNoise::jitter_along_s, "s", not_negative, "Sampling jitter along the rate."},
+        {"across_s", &GatedNoise::jitter_across_s, "s", not_negative, "Sampling jitter across it."},
+        {"axes", &GatedNoise::axes_error, "", not_negative, "Error of the axes."},
+        {"rate", &GatedNoise::rate_error, "", not_negative, "Error in proportion to the rate."},
+    }};
+    static constexpr std::array<settings::Setting<NoiseSection>, 3> figures{{
+        {"along_s", &NoiseSection::along_s, "s", not_negative, "Sampling jitter along the rate."},
+        {"across_s", &NoiseSection::across_s, "s", not_negative, "Sampling jitter across it."},
+        {"level", &NoiseSection::level, "", not_negative, "Times what is usual; 0 = not known."},
+    }};
+    static const auto rows = record<NoiseSection>(figures);
+    static const Table<GatedNoise> gated_table{"Terms of the gated sums.", {required(record<GatedNoise>(gated))}};
+    static const Table<NoiseSection> table{
+        "Errors of a moving array.",
+        {required(chosen(rows, {"along_s", "across_s"})), chosen(rows, {"level"}),
+         part({.name = "gated", .sentence = "Terms of the gated sums."}, &NoiseSection::gated, gated_table)}};
+    return table;
+}
+
+/// A text that may be empty.
+Rows<ClusterSection> text_row(Key key, std::string ClusterSection::*member)
+{
+    key.form = "text";
+    const auto read = [name = key.name, member](Section& section, ClusterSection& cluster) {
+        const YAML::Node node = section.raw(name);
+        if (node.IsDefined() && !(node.IsScalar() && node.Scalar().empty())) section.text(name, cluster.*member);
+    };
+    return own<ClusterSection>(key, read, [member](const ClusterSection& cluster) { return to_node(cluster.*member); });
+}
+
+const Table<ClusterSection>& cluster_table()
+{
+    static constexpr std::array<settings::Setting<ClusterSection>, 1> figures{
+        {{"interval_s", &ClusterSection::interval_s, "s", {.lowest = 1e-9}, "Interval between the recording's frames."}}};
+    static const Table<ClusterSection> table{
+        "A sensor cluster as calibrated.",
+        {text_row({.name = "name", .sentence = "Name of the cluster, up to 32 bytes."}, &ClusterSection::name),
+         word<ClusterSection, SensorKind>({.name = "kind", .sentence = "What it measures."}, "kind", &ClusterSection::kind,
+                                          {{"gyro", SensorKind::gyro}}),
+         required(record<ClusterSection>(figures)),
+         text_row({.name = "origin", .sentence = "The log that it comes from."}, &ClusterSection::origin),
+         part({.name = "motion_noise", .sentence = "Errors of a moving array."}, &ClusterSection::motion_noise, noise_table()),
+         required(list<ClusterSection, AxisSection>({.name = "axes", .sentence = "3 to 24 axes."}, &ClusterSection::axes, axis_table(),
+                                                    max_axes))}};
+    return table;
+}
+
+void take(const AxisSection& section, std::size_t axis, CalibratedCluster& cluster)
+{
     auto& description = cluster.description;
-    const std::string instrument = reading.text(node, "instrument", 16);
-    if (instrument.empty()) reading.problem(node.Mark(), "'instrument' is missing");
-    description.instrument[axis] = instrument_number(description, instrument);
-    reading.triple(node, "direction", description.axis[axis], true);
-    reading.triple(node, "position_m", description.position_m[axis], false);
-    reading.number(node, "gain", cluster.gain[axis], 0.1);
-    reading.number(node, "bias_rad_s", description.bias[axis]);
-    reading.number(node, "bias_spread_rad_s", cluster.bias_spread_rad_s[axis], 0, false);
-    reading.number(node, "sigma_rad", description.sigma[axis], 0);
-    reading.number(node, "quantum_rad", description.quantum[axis], 0, false);
-    reading.number(node, "range_rad_s", description.range[axis], 0, false);
+    description.instrument[axis] = instrument_number(description, section.instrument);
+    description.axis[axis] = section.direction;
+    description.position_m[axis] = section.position_m;
+    description.bias[axis] = section.bias_rad_s;
+    description.sigma[axis] = section.sigma_rad;
+    description.quantum[axis] = section.quantum_rad;
+    description.range[axis] = section.range_rad_s;
+    cluster.gain[axis] = section.gain;
+    cluster.bias_spread_rad_s[axis] = section.bias_spread_rad_s;
 }
 
-void read_axes(Reading& reading, const YAML::Node& root, CalibratedCluster& cluster)
+CalibratedCluster cluster_of(const ClusterSection& section)
 {
-    const YAML::Node axes = root["axes"];
-    if (!axes || !axes.IsSequence() || axes.size() < 3 || axes.size() > max_axes)
-        return reading.problem(axes ? axes.Mark() : root.Mark(), fmt::format("'axes' must list 3 to {} axes", max_axes));
-    cluster.description.axis_count = static_cast<std::uint8_t>(axes.size());
-    for (std::size_t axis = 0; axis < axes.size(); ++axis) read_axis(reading, axes[axis], axis, cluster);
-    if (!reading.good()) return;
-    if (const auto valid = geometry::make_cluster(cluster.description); !valid) reading.problem(axes.Mark(), valid.error());
+    CalibratedCluster cluster;
+    auto& description = cluster.description;
+    description.kind = static_cast<std::uint8_t>(section.kind);
+    description.interval_s = section.interval_s;
+    set_name(description.name, section.name);
+    cluster.origin = section.origin;
+    if (const auto& noise = section.motion_noise) {
+        cluster.jitter_along_s = noise->along_s;
+        cluster.jitter_across_s = noise->across_s;
+        cluster.motion_level = noise->level;
+        cluster.gated = noise->gated;
+    }
+    description.axis_count = static_cast<std::uint8_t>(section.axes.size());
+    for (std::size_t axis = 0; axis < section.axes.size(); ++axis) take(section.axes[axis], axis, cluster);
+    return cluster;
+}
+
+/// What the keys alone do not tell.
+void check(const ClusterSection& section, const YAML::Node& document, Problems& problems)
+{
+    const auto refuse_longer = [&](const std::string& path, const std::string& text, std::size_t longest) {
+        if (text.size() > longest) report(problems, document, path, fmt::format("must be a text of at most {} bytes", longest));
+    };
+    refuse_longer("name", section.name, sizeof(ClusterDescription::name));
+    refuse_longer("origin", section.origin, longest_origin);
+    for (std::size_t axis = 0; axis < section.axes.size(); ++axis)
+        refuse_longer(fmt::format("axes[{}].instrument", axis), section.axes[axis].instrument, sizeof(Name<16>));
+    if (section.axes.size() < 3) report(problems, document, "axes", fmt::format("must list 3 to {} axes", max_axes));
+    if (!problems.empty()) return;
+    if (const auto valid = geometry::make_cluster(cluster_of(section).description); !valid)
+        report(problems, document, "axes", valid.error());
+}
+
+tl::expected<CalibratedCluster, std::string> read(const tl::expected<YAML::Node, Problems>& document, const std::string& name)
+{
+    if (!document) return tl::unexpected(document.error().lines());
+    Problems problems{name};
+    ClusterSection section;
+    Section root{*document, "", problems};
+    cluster_table().read(root, section);
+    check(section, *document, problems);
+    if (!problems.empty()) return tl::unexpected(problems.lines());
+    return cluster_of(section);
 }
 
 }  // namespace
@@ -199,34 +240,12 @@ std::string to_yaml(const CalibratedCluster& cluster)
 
 tl::expected<CalibratedCluster, std::string> parse_cluster(const std::string& text, const std::string& name)
 {
-    Reading reading(name);
-    CalibratedCluster cluster;
-    try {
-        const YAML::Node root = YAML::Load(text);
-        if (reading.is_map_of(root, top_keys)) {
-            cluster.description.kind = octet(SensorKind::gyro);
-            const std::string kind = reading.text(root, "kind", 16);
-            if (!kind.empty() && kind != "gyro") reading.problem(root["kind"].Mark(), fmt::format("kind must be gyro, got '{}'", kind));
-            set_name(cluster.description.name, reading.text(root, "name", 32));
-            cluster.origin = reading.text(root, "origin", 1000);
-            reading.number(root, "interval_s", cluster.description.interval_s, 1e-9);
-            read_noise(reading, root["motion_noise"], cluster);
-            read_axes(reading, root, cluster);
-        }
-    } catch (const YAML::Exception& error) {  // yaml-cpp's only way to report a syntax error
-        reading.problem(error.mark, error.msg);
-    }
-    if (!reading.good()) return tl::unexpected(reading.report());
-    return cluster;
+    return read(parse_yaml(text, name), name);
 }
 
 tl::expected<CalibratedCluster, std::string> load_cluster(const std::string& file)
 {
-    std::ifstream stream(file);
-    if (!stream) return tl::unexpected(fmt::format("{}: cannot be opened for reading", file));
-    std::ostringstream text;
-    text << stream.rdbuf();
-    return parse_cluster(text.str(), file);
+    return read(load_yaml(file), file);
 }
 
 }  // namespace quorient::calibration

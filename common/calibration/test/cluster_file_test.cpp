@@ -72,7 +72,7 @@ TEST(ClusterFile, has_gated_terms_all_or_none)
     CalibratedCluster cluster = some_cluster();
     const auto lacking = parse_cluster(replaced(to_yaml(cluster), ", axes: ", ", rates: "), "cluster.yaml");
     ASSERT_FALSE(lacking);
-    EXPECT_THAT(lacking.error(), AllOf(HasSubstr("unknown key 'rates'"), HasSubstr("'axes' is missing")));
+    EXPECT_THAT(lacking.error(), AllOf(HasSubstr("unknown key 'rates'"), HasSubstr("motion_noise.gated.axes is missing")));
     cluster.gated.reset();
     const auto without = parse_cluster(to_yaml(cluster), "cluster.yaml");
     ASSERT_TRUE(without) << without.error();
@@ -87,9 +87,9 @@ TEST(ClusterFile, names_every_problem_with_its_place)
     text = replaced(text, "kind: gyro", "kind: compass");
     const auto read = parse_cluster(text, "cluster.yaml");
     ASSERT_FALSE(read);
-    EXPECT_THAT(read.error(),
-                AllOf(HasSubstr("cluster.yaml:4:7: kind must be gyro"), HasSubstr("cluster.yaml:7:16: unknown key 'allong_s'"),
-                      HasSubstr("'along_s' is missing"), HasSubstr("gain must be at least 0.1")));
+    EXPECT_THAT(read.error(), AllOf(HasSubstr("cluster.yaml:4:7: kind: unknown kind 'compass'; there is gyro"),
+                                    HasSubstr("cluster.yaml:7:16: unknown key 'allong_s' in motion_noise; did you mean 'along_s'?"),
+                                    HasSubstr("motion_noise.along_s is missing"), HasSubstr("axes[0].gain: must be at least 0.1, got -1")));
 }
 
 TEST(ClusterFile, refuses_axes_that_no_cluster_can_have)
@@ -98,11 +98,12 @@ TEST(ClusterFile, refuses_axes_that_no_cluster_can_have)
     const auto error = [](const std::string& text) { return parse_cluster(text, "c").error(); };
     EXPECT_THAT(error(replaced(good, "direction: [", "direction: [9")), HasSubstr("norm"));
     EXPECT_THAT(error(replaced(good, "direction: [", "direction: [0, ")), HasSubstr("[x, y, z]"));
-    EXPECT_THAT(error(replaced(good, "sigma_rad: 3", "sigma_rad: .nan, position_m: [0, 0, 0], quantum_rad: 3")), HasSubstr("finite"));
-    EXPECT_THAT(error("axes: [1, 2, 3]"), HasSubstr("expected keys"));
+    EXPECT_THAT(error(replaced(good, "sigma_rad: 3", "sigma_rad: .nan, position_m: [0, 0, 0], quantum_rad: 3")),
+                HasSubstr("axes[0].sigma_rad: expected a number [rad], got '.nan'"));
+    EXPECT_THAT(error("axes: [1, 2, 3]"), HasSubstr("axes[0] must be a mapping of keys to values, got '1'"));
     EXPECT_THAT(error(""), HasSubstr("expected keys"));
     EXPECT_THAT(error("axes: ["), HasSubstr("c:1"));
-    EXPECT_THAT(error("[]"), HasSubstr("known are"));
+    EXPECT_THAT(error("[]"), HasSubstr("expected a mapping of keys to values"));
     EXPECT_FALSE(load_cluster("/nowhere.yaml"));
 }
 

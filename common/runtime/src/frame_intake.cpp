@@ -2,6 +2,7 @@
 
 #include "quorient/messages/meaning.hpp"
 #include "quorient/messages/sample_time.hpp"
+#include "quorient/messages/unit_kind.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,10 +38,8 @@ constexpr std::uint32_t restart_after = 5;
 
 const char* FrameIntake::problem_of(const ClusterDescription& description)
 {
-    // Directions in space take three to measure a rotation; a vessel's channels need no directions.
-    const bool channels = kind_of(description) == SensorKind::vessel_rates;
-    if (description.axis_count < (channels ? 1 : 3) || description.axis_count > max_axes)
-        return channels ? "it must have 1 to 24 channels" : "it must have 3 to 24 axes";
+    const UnitKind& kind = unit_kind(kind_of(description));
+    if (description.axis_count < kind.least_axes || description.axis_count > max_axes) return kind.wrong_count;
     if (!is_interval(description.interval_s)) return "its interval must be 1 ns to an hour";
     return nullptr;
 }

@@ -9,6 +9,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 #include <algorithm>
+#include <array>
 
 namespace quorient::runtime {
 
@@ -19,6 +20,8 @@ constexpr std::int64_t status_period_ns = second_ns / 2;
 /// Nobody asks more often whether frames are fresh, and each beat is a system call.
 constexpr std::int64_t heartbeat_period_ns = 20'000'000;
 constexpr std::int64_t match_patience_ns = 5 * second_ns;
+constexpr std::int64_t day_ns = 24 * 3600 * second_ns;
+constexpr std::int64_t expiry_warning_ns = 30 * day_ns;
 
 spdlog::level::level_enum level_of(Severity severity)
 {
@@ -31,6 +34,30 @@ spdlog::level::level_enum level_of(Severity severity)
         default:
             return spdlog::level::info;
     }
+}
+
+std::string describe(const bus::Sender& sender)
+{
+    if (sender.authenticated) return fmt::format("{} (certificate)", sender.name);
+    if (!sender.name.empty()) return fmt::format("'{}' (unconfirmed name)", sender.name);
+    return sender.guid.empty() ? std::string{"an unknown sender"} : fmt::format("participant {}", sender.guid);
+}
+
+struct OrderRule {
+    CommandAction action;
+    const char* word;
+    const char* key;  ///< under `commands` in the system file
+    bool OrderSettings::*permitted;
+};
+constexpr std::array order_rules{OrderRule{CommandAction::inject, "inject", "inject", &OrderSettings::inject},
+                                 OrderRule{CommandAction::clear, "inject --clear", "inject", &OrderSettings::inject},
+                                 OrderRule{CommandAction::readmit, "readmit", "readmit", &OrderSettings::readmit},
+                                 OrderRule{CommandAction::reset_attitude, "reset", "reset", &OrderSettings::reset}};
+
+const OrderRule* rule_for(CommandAction action)
+{
+    const auto rule = std::ranges::find(order_rules, action, &OrderRule::action);
+    return rule == order_rules.end() ? nullptr : &*rule;
 }
 
 }  // namespace
@@ -61,6 +88,8 @@ Node::Node(NodeSettings settings, bus::Bus& bus, EventLoop& loop)
     loop_.every(status_period_ns, [this] {
         look_at_endpoints();
         look_at_shared_memory();
+        look_at_identity();
+        look_at_refusals();
         publish_status();
     });
 }
@@ -101,11 +130,29 @@ bool Node::report_throttled(EventCode code, Severity severity, Identity identity
     return true;
 }
 
-void Node::on_order(std::function<void(const FaultCommand&)> handler)
+void Node::on_order(std::initializer_list<CommandAction> kinds, std::function<void(const FaultCommand&)> handler)
 {
-    loop_.on(bus_.subscribe(bus::topics::command), [this, handler = std::move(handler)](const FaultCommand& order) {
-        if (order.unit == settings_.unit && is_new(order.request)) handler(order);
-    });
+    const auto obey = [this, kinds = std::vector(kinds), handler = std::move(handler)](const FaultCommand& order) {
+        const auto action = action_of(order);
+        const bool concerned = order.unit == settings_.unit && std::find(kinds.begin(), kinds.end(), action) != kinds.end();
+        if (!concerned || !is_new(order.request)) return;
+        if (permits(action)) handler(order);
+        else refuse(order);
+    };
+    orders_ = &loop_.on(bus_.subscribe(bus::topics::command), obey);
+}
+
+bool Node::permits(CommandAction action) const
+{
+    const auto* rule = rule_for(action);
+    return rule && settings_.orders.*rule->permitted;
+}
+
+void Node::refuse(const FaultCommand& order)
+{
+    const auto* rule = rule_for(action_of(order));
+    report(EventCode::command_refused, Severity::warning_high, {status_.epoch, status_.sequence}, order.axes,
+           fmt::format("refuses {} from {}: the system file has commands.{}: refused", rule->word, describe(orders_->sender()), rule->key), order.request);
 }
 
 /// Requests are numbered by who gives them; 0 is nobody's number.
@@ -183,6 +230,25 @@ void Node::look_at_shared_memory()
     told_shared_memory_lost_ = true;
     report(EventCode::shared_memory_lost, Severity::warning_high, {status_.epoch, status_.sequence}, 0,
            "iceoryx's daemon is gone or another one: who starts from now on shares no memory with this process");
+}
+
+/// Warns at the start and once a day.
+void Node::look_at_identity()
+{
+    if (settings_.identity_expires_ns == 0 || (expiry_reported_ns_ != 0 && clock().steady_ns() - expiry_reported_ns_ < day_ns)) return;
+    const auto left_ns = settings_.identity_expires_ns - clock().wall_ns();
+    if (left_ns > expiry_warning_ns) return;
+    expiry_reported_ns_ = clock().steady_ns();
+    const bool expired = left_ns <= 0;
+    report(EventCode::identity_expires, expired ? Severity::warning_high : Severity::warning_low, {status_.epoch, status_.sequence}, 0,
+           expired ? fmt::format("its certificate has expired: processes that start from now on refuse it; quorient keys --renew {}, then restart it", settings_.name)
+                   : fmt::format("its certificate expires in {} days: quorient keys --renew {}, then restart it", left_ns / day_ns, settings_.name));
+}
+
+void Node::look_at_refusals()
+{
+    for (const auto& refusal : bus_.refusals())
+        report(EventCode::security, Severity::warning_high, {status_.epoch, status_.sequence}, 0, refusal);
 }
 
 void Node::publish_status()

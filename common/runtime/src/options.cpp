@@ -7,7 +7,8 @@
 
 namespace quorient::runtime {
 
-tl::expected<Options, OptionsError> parse_options(int argc, char** argv, const std::string& description, const std::string& default_name)
+tl::expected<Options, OptionsError> parse_options(int argc, char** argv, const std::string& description, const std::string& default_name,
+                                                  const std::vector<Switch>& switches)
 {
     Options options;
     options.name = default_name;
@@ -27,6 +28,9 @@ tl::expected<Options, OptionsError> parse_options(int argc, char** argv, const s
     app.add_option("--set", options.set, "A value in place of the file's, e.g. source.speed=2 (repeatable)")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
+    for (const auto& one : switches) {
+        app.add_flag_callback(one.name, [&options, &one] { options.set.push_back(one.assignment); }, one.help);
+    }
     try {
         app.parse(argc, argv);
         if (!vendor.empty()) {

@@ -19,7 +19,7 @@ void ask_for_realtime(const RealtimeSettings& settings)
     };
     if (settings.priority > 0) {
         sched_param parameters{};
-        parameters.sched_priority = settings.priority;
+        parameters.sched_priority = static_cast<int>(settings.priority);
         asked(::sched_setscheduler(0, SCHED_FIFO, &parameters), "real-time priority");
     }
     if (settings.lock_memory) asked(::mlockall(MCL_CURRENT | MCL_FUTURE), "memory lock");

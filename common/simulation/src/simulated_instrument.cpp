@@ -1,16 +1,17 @@
-#include "quorient/messages/meaning.hpp"
 #include "quorient/simulation/simulated_instrument.hpp"
+#include "quorient/messages/meaning.hpp"
 
 #include "counter_noise.hpp"
 
 #include <fmt/format.h>
+#include <array>
 #include <cassert>
 #include <cmath>
 
 namespace quorient::simulation {
 namespace {
 
-constexpr std::array<std::string_view, 4> quantize_words{"none", "carry", "truncate", "body-truncate"};  // in the order of Quantize
+constexpr std::array<std::string_view, 4> words_of_quantize{"none", "carry", "truncate", "body-truncate"};  // in the order of Quantize
 
 double truncated(double increment, double quantum)
 {
@@ -34,31 +35,40 @@ geometry::SensorCluster in_scenario(geometry::SensorCluster cluster, const Scena
     return cluster;
 }
 
-bool finite_at_least_0(double figure)
-{
-    return std::isfinite(figure) && figure >= 0.0;
-}
-
 }  // namespace
+
+std::vector<std::pair<std::string, Quantize>> quantize_words()
+{
+    std::vector<std::pair<std::string, Quantize>> words;
+    for (std::size_t way = 0; way < words_of_quantize.size(); ++way) words.emplace_back(words_of_quantize[way], static_cast<Quantize>(way));
+    return words;
+}
 
 tl::expected<Quantize, std::string> parse_quantize(std::string_view word)
 {
-    const auto* const found = std::find(quantize_words.begin(), quantize_words.end(), word);
-    if (found == quantize_words.end())
-        return tl::unexpected(fmt::format("unknown quantisation '{}'; valid: {}", word, fmt::join(quantize_words, ", ")));
-    return static_cast<Quantize>(found - quantize_words.begin());
+    for (const auto& [known, way] : quantize_words())
+        if (known == word) return way;
+    return tl::unexpected(fmt::format("unknown quantisation '{}'; valid: {}", word, fmt::join(words_of_quantize, ", ")));
+}
+
+settings::Record<Scenario> scenario_record()
+{
+    static constexpr std::array<settings::Setting<Scenario>, 4> record{{
+        {"quantum_rad", &Scenario::quantum, "rad", settings::not_negative,
+         "The step in which a sensor counts [m/s for accelerometers]; 0 = none."},
+        {"noise_rad", &Scenario::noise_rad, "rad", settings::not_negative,
+         "Standard deviation of every increment [m/s for accelerometers], before it is quantised."},
+        {"seed", &Scenario::seed, "", {}, "Seed of all that is random; the same seed gives the same frames."},
+        {"duration_s", &Scenario::duration_s, "s", settings::not_negative, "Length of the simulation; 0 = without end."},
+    }};
+    return record;
 }
 
 tl::expected<void, std::string> check(const Scenario& scenario, const geometry::SensorCluster& cluster)
 {
     if (!(std::isfinite(scenario.interval_s) && scenario.interval_s > 0.0))
         return tl::unexpected(fmt::format("the interval must be above 0 s, got {}", scenario.interval_s));
-    if (!finite_at_least_0(scenario.duration_s))
-        return tl::unexpected(fmt::format("the duration must be 0 s or more, got {}", scenario.duration_s));
-    if (!finite_at_least_0(scenario.noise_rad))
-        return tl::unexpected(fmt::format("the noise must be 0 rad or more, got {}", scenario.noise_rad));
-    if (!finite_at_least_0(scenario.quantum))
-        return tl::unexpected(fmt::format("the quantum must be 0 rad or more, got {}", scenario.quantum));
+    if (const auto bounded = settings::check(scenario_record(), scenario); !bounded) return bounded;
     if (scenario.quantize != Quantize::none && scenario.quantum == 0.0)
         return tl::unexpected(std::string("quantisation needs a quantum above 0 rad"));
     if (scenario.faults.size() > FaultInjector::capacity)

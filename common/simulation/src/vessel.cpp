@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 #include <Eigen/LU>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <numbers>
@@ -71,6 +72,25 @@ geometry::SensorCluster channels_of(const VesselScenario& scenario)
     return cluster;
 }
 
+settings::Record<VesselScenario> vessel_record()
+{
+    static constexpr std::array<settings::Setting<VesselScenario>, 3> record{{
+        {"noise", &VesselScenario::noise, "", settings::not_negative, "Standard deviation of every sample, in its channel's unit."},
+        {"seed", &VesselScenario::seed, "", {}, "Seed of all that is random; the same seed gives the same frames."},
+        {"duration_s", &VesselScenario::duration_s, "s", settings::not_negative, "How long it sails."},
+    }};
+    return record;
+}
+
+settings::Record<VesselScenario> rudder_record()
+{
+    static constexpr std::array<settings::Setting<VesselScenario>, 2> record{{
+        {"amplitude_rad", &VesselScenario::rudder_rad, "rad", {}, "Amplitude of the sine that the rudder follows."},
+        {"period_s", &VesselScenario::rudder_period_s, "s", settings::above_zero, "Period of that sine."},
+    }};
+    return record;
+}
+
 tl::expected<void, std::string> check(const VesselScenario& scenario)
 {
     const Eigen::Index n = scenario.model.a.rows();
@@ -83,11 +103,10 @@ tl::expected<void, std::string> check(const VesselScenario& scenario)
     if (auto sized = check_size("C", scenario.model.c, channels, n); !sized) return sized;
     if (!(scenario.interval_s > 0) || !std::isfinite(scenario.interval_s))
         return tl::unexpected(std::string("the interval must be above 0 s"));
-    if (!(scenario.duration_s >= 0) || !(scenario.duration_s / scenario.interval_s < 1e9))
+    if (const auto bounded = settings::check(vessel_record(), scenario); !bounded) return bounded;
+    if (const auto bounded = settings::check(rudder_record(), scenario); !bounded) return tl::unexpected("rudder: " + bounded.error());
+    if (!(scenario.duration_s / scenario.interval_s < 1e9))
         return tl::unexpected(std::string("the duration must be from 0 s to a billion intervals"));
-    if (!(scenario.noise >= 0) || !std::isfinite(scenario.noise)) return tl::unexpected(std::string("the noise must be 0 or more"));
-    if (!(scenario.rudder_period_s > 0) || !std::isfinite(scenario.rudder_rad))
-        return tl::unexpected(std::string("the rudder needs a finite amplitude and a period above 0 s"));
     if (!scenario.channels.empty() && scenario.channels.size() != static_cast<std::size_t>(channels))
         return tl::unexpected(fmt::format("{} names for {} channels", scenario.channels.size(), channels));
     for (const FaultSpec& fault : scenario.faults) {

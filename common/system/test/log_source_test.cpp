@@ -85,6 +85,18 @@ TEST_F(LogSource, does_not_look_for_its_calibration_where_the_process_was_starte
     EXPECT_THAT(system.error(), HasSubstr((folder_ / "cluster.yaml").string()));
 }
 
+TEST_F(LogSource, needs_no_rest_where_all_detectors_measure_biases_and_noise_themselves)
+{
+    const auto rest_s = [&](const std::string& method) {
+        std::ofstream(folder_ / "rest.yaml") << "domain: 1\nunit: {id: 1}\nsource: {kind: log, file: a.csv}\nlanes:\n"
+                                             << "  - {name: a, detector: {method: field}}\n  - {name: b, detector: {method: " << method
+                                             << "}}\nvoters:\n  - {name: voter-1}\n";
+        return system::load((folder_ / "rest.yaml").string()).value().sensor.source.log->rest_s;
+    };
+    EXPECT_EQ(rest_s("field"), 0);
+    EXPECT_EQ(rest_s("glt"), 10);
+}
+
 TEST_F(LogSource, tells_the_detectors_the_gated_terms_of_its_calibration)
 {
     const auto gated = loaded("file: a.csv, calibration: cluster.yaml")->lanes.front().detector.detection.gated_noise;

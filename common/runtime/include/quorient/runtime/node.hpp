@@ -12,12 +12,20 @@
 
 #include <array>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace quorient::runtime {
+
+/// The orders that a process accepts.
+struct OrderSettings {
+    bool inject = true;  ///< inject and clear
+    bool readmit = true;
+    bool reset = true;
+};
 
 /// Who a process is.
 struct NodeSettings {
@@ -28,6 +36,8 @@ struct NodeSettings {
     bool stamps = false;     ///< fill the hop stamps of messages
     bool heartbeat = true;   ///< leave a heartbeat file, and tell the service manager
     bool log_events = true;  ///< also to stderr
+    OrderSettings orders;
+    std::int64_t identity_expires_ns = 0;  ///< when its certificate expires, since 1970; 0 = no certificate
 };
 
 /// What every service does beside its work: tells its events and its status, leaves its heartbeat, watches its endpoints.
@@ -57,8 +67,9 @@ public:
     /// Warns when this endpoint meets an incompatible peer, when it matched nobody within 5 s, and when it has not the transport asked for.
     void watch(std::string_view what, std::function<bus::EndpointStatus()> status, bool must_match);
 
-    /// Orders to this unit, each once: who gives one repeats it until everybody whom it concerns has answered.
-    void on_order(std::function<void(const FaultCommand&)> handler);
+    /// Calls the handler for orders of these kinds to this unit, once for each: a sender repeats its order until all services concerned
+    /// have answered. An order that the settings do not permit is refused with an event that names the sender.
+    void on_order(std::initializer_list<CommandAction> kinds, std::function<void(const FaultCommand&)> handler);
 
     /// The endpoint whose transport and peers the status tells.
     void main_output(std::function<bus::EndpointStatus()> status) { main_output_ = std::move(status); }
@@ -83,9 +94,13 @@ private:
     };
 
     bool is_new(std::uint64_t request);
+    bool permits(CommandAction action) const;
+    void refuse(const FaultCommand& order);
     void publish_status();
     void look_at_endpoints();
     void look_at_shared_memory();
+    void look_at_identity();
+    void look_at_refusals();
 
     NodeSettings settings_;
     bus::Bus& bus_;
@@ -105,6 +120,8 @@ private:
     std::vector<Watched> watched_;
     std::function<bus::EndpointStatus()> main_output_;
     bool told_shared_memory_lost_ = false;
+    bus::Subscription<FaultCommand>* orders_ = nullptr;
+    std::int64_t expiry_reported_ns_ = 0;  ///< steady; 0 = never
     std::int64_t started_ns_;
 };
 

@@ -6,7 +6,7 @@
 namespace quorient::runtime {
 
 struct RealtimeSettings {
-    int priority = 0;  ///< SCHED_FIFO priority 1 to 99; 0 = ordinary scheduling
+    unsigned priority = 0;  ///< SCHED_FIFO priority 1 to 99; 0 = ordinary scheduling
     bool lock_memory = false;
     std::vector<std::uint32_t> processors;  ///< allowed; empty = all
 };

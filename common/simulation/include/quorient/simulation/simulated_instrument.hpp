@@ -4,6 +4,7 @@
 #include "quorient/messages/codes.hpp"
 #include "quorient/messages/sensor_frame.hpp"
 #include "quorient/messages/truth_state.hpp"
+#include "quorient/settings/setting.hpp"
 #include "quorient/simulation/faults.hpp"
 #include "quorient/simulation/motion.hpp"
 
@@ -12,6 +13,7 @@
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+#include <utility>
 #include <vector>
 
 namespace quorient::simulation {
@@ -24,7 +26,9 @@ enum class Quantize {
     body_truncate,  ///< the three body increments toward zero, then projected on the axes (what paper 003's tables need)
 };
 
-/// `none`, `carry`, `truncate` or `body-truncate`.
+/// The words `none`, `carry`, `truncate` and `body-truncate`, and which way each means.
+std::vector<std::pair<std::string, Quantize>> quantize_words();
+
 tl::expected<Quantize, std::string> parse_quantize(std::string_view word);
 
 /// Everything that decides a simulated instrument's output.
@@ -38,6 +42,9 @@ struct Scenario {
     std::vector<FaultSpec> faults;
     double duration_s = 0;  ///< 0 = without end
 };
+
+/// What a user can set of it as a number.
+settings::Record<Scenario> scenario_record();
 
 /// What is wrong with a scenario for this cluster, or nothing: interval, quantum, noise, duration, faults.
 tl::expected<void, std::string> check(const Scenario& scenario, const geometry::SensorCluster& cluster);

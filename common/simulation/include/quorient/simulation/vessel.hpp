@@ -2,6 +2,7 @@
 
 #include "quorient/geometry/zero_order_hold.hpp"
 #include "quorient/messages/sensor_frame.hpp"
+#include "quorient/settings/setting.hpp"
 #include "quorient/simulation/faults.hpp"
 
 #include <Eigen/Core>
@@ -55,6 +56,10 @@ struct VesselScenario {
     std::uint64_t seed = 1;
     std::vector<FaultSpec> faults;  ///< axis = channel (0 sway velocity, 1 yaw rate); the times of samples count
 };
+
+/// What a user can set of it as a number, and of its rudder.
+settings::Record<VesselScenario> vessel_record();
+settings::Record<VesselScenario> rudder_record();
 
 /// The channels as a description names them and as faults act on them: each its own instrument, no directions.
 geometry::SensorCluster channels_of(const VesselScenario& scenario);

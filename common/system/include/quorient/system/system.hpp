@@ -1,11 +1,15 @@
 #pragma once
 
-#include "quorient/attitude/integrator.hpp"
+#include "quorient/attitude/integrator_settings.hpp"
 #include "quorient/bus/settings.hpp"
 #include "quorient/calibration/cluster_file.hpp"
+#include "quorient/configuration/key.hpp"
+#include "quorient/configuration/problems.hpp"
+#include "quorient/fdi/fault_monitor.hpp"
 #include "quorient/fdi/observer_bank.hpp"
 #include "quorient/fdi/settings.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"
+#include "quorient/messages/unit_kind.hpp"
 #include "quorient/runtime/node.hpp"
 #include "quorient/runtime/realtime.hpp"
 #include "quorient/simulation/simulated_instrument.hpp"
@@ -21,11 +25,18 @@
 
 namespace quorient::system {
 
+/// `security` of the system file. common/security has the layout of the directory.
+struct SecuritySettings {
+    std::string directory;  ///< relative to the folder of the system file
+    bus::SecurityLevel level = bus::SecurityLevel::none;
+};
+
 /// What every process of a system has.
 struct ProcessSettings {
     runtime::NodeSettings node;
     bus::Settings bus;
     runtime::RealtimeSettings realtime;
+    SecuritySettings security;
     bool spin = false;  ///< spin instead of blocking
 };
 
@@ -64,12 +75,19 @@ struct SensorSettings {
     ProcessSettings process;
     SourceSettings source;
     std::optional<geometry::SensorCluster> cluster;  ///< of a simulation; a log brings its own
+    double range = 0;                                ///< that the file states, of every axis [rad/s; m/s^2]; 0 = none
     std::string unit_name;
     double wait_s = 5;  ///< for the consumers, then it goes on without them
     std::vector<std::string> consumers;
     std::optional<std::array<double, 4>> initial_attitude;  ///< absent: the simulation's own, unknown for a log
     std::optional<double> levelled_heading_rad;             ///< roll and pitch from the log's accelerometers at rest, this heading
     SensorKind kind = SensorKind::gyro;
+};
+
+/// Why a detector cannot serve a unit.
+struct Unfit {
+    std::string why;
+    bool by_description = false;  ///< what the unit says of itself is wrong; else this detector does not suit it
 };
 
 struct DetectorProcess {
@@ -81,6 +99,9 @@ struct DetectorProcess {
     std::optional<fdi::ObserverSettings> observers;  ///< of a vessel, in place of `detection`
     double observer_margin = 1;
     fdi::VerdictSettings verdict;
+
+    /// Its brain, for a unit that describes itself so.
+    tl::expected<fdi::FaultMonitor, Unfit> make_monitor(const ClusterDescription& description) const;
 };
 
 struct IntegratorProcess {
@@ -106,6 +127,14 @@ struct VoterProcess {
     std::optional<Ros2OutputSettings> ros2;
 };
 
+/// The process that shows a system: a page, its state as JSON, figures for Prometheus. It is only started where the file has it.
+struct MonitorProcess {
+    ProcessSettings process;
+    std::string address = "127.0.0.1";  ///< of the web server; anything but loopback only where stated
+    std::uint32_t port = 8080;          ///< 0 = any free one
+    bool allow_orders = false;          ///< faults, readmissions and resets from the page
+};
+
 /// What a run must show; `quorient launch` checks it against the simulator's truth and says so in its exit code.
 struct Expectations {
     std::optional<AxisMask> isolated;            ///< exactly these axes, by every lane
@@ -127,6 +156,7 @@ struct LaneProcess {
 /// A whole system as its file describes it.
 struct System {
     std::string file;
+    std::string configuration;  ///< the file with every value that holds, as YAML; it reads back to the same system
     std::string name;
     std::uint32_t unit = 0;
     double interval_s = 0.005;
@@ -134,12 +164,19 @@ struct System {
     std::vector<LaneProcess> lanes;
     std::vector<VoterProcess> voters;
     ProcessSettings monitor;  ///< for tools that look on
+    std::optional<MonitorProcess> web_monitor;
     Expectations expectations;
     std::optional<simulation::VesselModel> vessel;  ///< of a unit of kind vessel_rates: what the detectors take it to be
     std::vector<std::string> channels;              ///< likewise, their names
 
-    /// A vessel's rates are detected on, and not integrated: no integrators, no voters.
-    bool has_attitude() const { return sensor.kind != SensorKind::vessel_rates; }
+    /// All processes of the file, in the order in which they start: those first that receive from the others.
+    std::vector<const ProcessSettings*> processes() const;
+
+    /// One for each lane; none where the unit gives no attitude.
+    std::vector<const IntegratorProcess*> integrators() const;
+
+    /// Else faults are looked for, and nothing is integrated: no integrators, no voters.
+    bool has_attitude() const { return unit_kind(sensor.kind).gives_attitude; }
 
     /// The process of that name; an error that lists the names of this role.
     tl::expected<DetectorProcess, std::string> detector(std::string_view process) const;
@@ -149,14 +186,22 @@ struct System {
 
 /// What the command line sets in place of the file.
 struct Overrides {
-    std::optional<Vendor> dds;  ///< of every process
-    std::optional<std::uint32_t> domain;
-    std::string process;  ///< the one that this host runs: only its network is checked; empty = every one
-    std::vector<std::string>
-        set;  ///< `source.speed=2`, `source.faults+=axis=1,kind=zero`: values of the file, as runtime::assign takes them
+    std::optional<Vendor> dds{};  ///< of every process
+    std::optional<std::uint32_t> domain{};
+    std::string process{};           ///< the one that this host runs: only its network and keys are checked; empty = every one
+    std::vector<std::string> set{};  ///< `source.speed=2`, `source.faults+=axis=1,kind=zero`: as configuration::assign takes them
+    bool joins = true;               ///< false: no process joins the bus, so no keys are needed
+    bool any_host = false;           ///< neither networks nor keys are checked: the processes run on other hosts
 };
 
-/// Reads a system file. @returns every problem of the file at once, one per line with file:line:column, and how many there are.
+/// Reads a system file. @returns every problem of the file at once.
+tl::expected<System, configuration::Problems> judge(const std::string& file, const Overrides& overrides = {});
+
+/// The same. @returns the problems as text: one per line with file:line:column, and how many there are.
 tl::expected<System, std::string> load(const std::string& file, const Overrides& overrides = {});
+
+/// All keys of a system file, and the page docs/system-file.md that is made of them.
+configuration::Chapter reference();
+std::string reference_page();
 
 }  // namespace quorient::system

@@ -1,0 +1,61 @@
+#include "quorient/system/system.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+using namespace quorient;
+using testing::HasSubstr;
+
+namespace {
+
+tl::expected<system::System, std::string> loaded(const std::vector<std::string>& set)
+{
+    return system::load(QUORIENT_SOURCE_DIR "/deploy/configurations/demo.yaml", {.dds = {}, .domain = {}, .process = {}, .set = set});
+}
+
+std::string refusal(const std::vector<std::string>& set)
+{
+    const auto system = loaded(set);
+    return system ? "accepted" : system.error();
+}
+
+}  // namespace
+
+TEST(MonitorFile, a_system_without_the_section_has_no_monitor)
+{
+    EXPECT_FALSE(loaded({})->web_monitor);
+}
+
+TEST(MonitorFile, the_page_is_served_on_loopback_and_takes_no_orders_unless_stated)
+{
+    const auto system = loaded({"monitor.port=8080"});
+    ASSERT_TRUE(system) << system.error();
+    EXPECT_EQ(system->web_monitor->address, "127.0.0.1");
+    EXPECT_EQ(system->web_monitor->port, 8080u);
+    EXPECT_FALSE(system->web_monitor->allow_orders);
+    EXPECT_EQ(system->web_monitor->process.node.name, "monitor");
+}
+
+TEST(MonitorFile, the_monitor_is_never_a_real_time_process_because_the_others_are)
+{
+    const auto system = loaded({"priority=50", "lock_memory=true", "spin=true", "monitor.port=8080"});
+    ASSERT_TRUE(system) << system.error();
+    EXPECT_EQ(system->voters.front().process.realtime.priority, 50);
+    EXPECT_EQ(system->web_monitor->process.realtime.priority, 0);
+    EXPECT_FALSE(system->web_monitor->process.realtime.lock_memory);
+    EXPECT_FALSE(system->web_monitor->process.spin);
+}
+
+TEST(MonitorFile, the_sensor_does_not_wait_for_the_monitor)
+{
+    const auto with = loaded({"monitor.port=8080"});
+    EXPECT_EQ(with->sensor.consumers, loaded({})->sensor.consumers);
+}
+
+TEST(MonitorFile, says_what_is_wrong_with_the_address_the_port_and_the_keys)
+{
+    EXPECT_THAT(refusal({"monitor.address=everywhere"}), HasSubstr("'everywhere' is no IPv4 address"));
+    EXPECT_THAT(refusal({"monitor.port=70000"}), HasSubstr("monitor.port"));
+    EXPECT_THAT(refusal({"monitor.prot=8080"}), HasSubstr("did you mean 'port'?"));
+    EXPECT_EQ(refusal({"monitor.address=0.0.0.0"}), "accepted");
+}
