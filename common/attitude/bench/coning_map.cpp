@@ -1,5 +1,5 @@
 // Coning drift of the window of ten against the 1/12 rule over half angle, frequency and sampling rate.
-//   attitude_coning_map table              the table beside methods.md's
+//   attitude_coning_map table              the table of docs/methods/coning.md
 //   attitude_coning_map map FILE.svg [S]   the map, over S seconds (600)
 #include "../test/coning.hpp"
 

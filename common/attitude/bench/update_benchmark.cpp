@@ -52,7 +52,7 @@ void integrator_frame(benchmark::State& state)
     const ClassicConing motion(10, 1);
     Instrument instrument(cluster, motion);
     auto frames = record(instrument, rows);
-    Integrator integrator = integrator_for(cluster, motion, 10);
+    Integrator integrator = Integrator::make(settings_for(motion, 10), cluster).value();
     std::uint64_t sequence = 0;
     for (auto _ : state) {
         SensorFrame& frame = frames[sequence % rows];
@@ -70,7 +70,7 @@ void rollback_of_1000_frames(benchmark::State& state)
     const auto cluster = cluster_of("cone-6", interval_s, 1e-6);
     const ClassicConing motion(10, 1);
     auto frames = record(Instrument(cluster, motion), rows);
-    Integrator integrator = integrator_for(cluster, motion, 11);
+    Integrator integrator = Integrator::make(settings_for(motion, 11), cluster).value();
     std::uint64_t sequence = 0;
     const auto add = [&] {
         SensorFrame& frame = frames[sequence % rows];

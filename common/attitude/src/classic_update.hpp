@@ -4,7 +4,7 @@
 
 namespace quorient::attitude {
 
-/// The classical rotation-vector formulas (methods.md 003, "Attitude update"). N samples make one rotation vector:
+/// The classical rotation-vector formulas (docs/methods/coning.md, "Classical rules"). N samples make one rotation vector:
 ///   N = 1          phi = th
 ///   1 + previous   phi = th + 1/12 th_previous x th
 ///   N = 2          phi = th1 + th2 + 2/3 th1 x th2

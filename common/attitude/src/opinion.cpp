@@ -1,5 +1,4 @@
 #include "opinion.hpp"
-#include "quorient/messages/exclusions.hpp"
 #include "quorient/messages/meaning.hpp"
 
 #include <algorithm>
@@ -7,22 +6,34 @@
 #include <tuple>
 
 namespace quorient::attitude {
-namespace {
 
-}  // namespace
+bool Opinion::clears() const
+{
+    switch (state) {
+        case VerdictState::healthy:
+        case VerdictState::suspect:
+        case VerdictState::isolated:
+        case VerdictState::provisional:
+            return true;
+        default:
+            return false;
+    }
+}
 
 bool Opinion::precedes(const Opinion& other) const
 {
-    const auto key = [](const Opinion& o) { return std::tie(o.excluded_from, o.state, o.suspects, o.candidates, o.residual); };
+    const auto key = [](const Opinion& o) { return std::tie(o.excluded_from, o.isolated, o.state, o.suspects, o.candidates, o.residual); };
     return key(*this) < key(other);
 }
 
 void Opinion::take_over(const Opinion& other, AxisMask axes)
 {
-    taken_over |= axes & ~excluded;
+    const AxisMask added = axes & ~isolated;
     for (std::size_t axis = 0; axis < max_axes; ++axis)
-        if (has_axis(axes & ~excluded, axis)) excluded_from[axis] = other.excluded_from[axis];
-    excluded |= axes;
+        if (has_axis(added, axis)) excluded_from[axis] = std::min(excluded_from[axis], other.excluded_from[axis]);
+    taken_over |= added;
+    isolated |= added;
+    excluded |= added;
 }
 
 Opinion opinion_of(const FaultVerdict& verdict)
@@ -30,7 +41,8 @@ Opinion opinion_of(const FaultVerdict& verdict)
     Opinion opinion;
     opinion.sequence = verdict.sequence;
     opinion.excluded_from = verdict.excluded_from;
-    opinion.excluded = verdict.excluded_from.mask();
+    opinion.excluded = opinion.own = verdict.excluded_from.mask();
+    opinion.isolated = verdict.isolated_mask & opinion.excluded;
     opinion.suspects = verdict.suspect_mask;
     const std::size_t count = std::min<std::size_t>(verdict.candidate_count, max_candidates);
     for (std::size_t i = 0; i < count; ++i) opinion.candidates |= verdict.candidate_set[i];
@@ -46,7 +58,7 @@ Opinion opinion_of(const VotedAttitude& voted)
     opinion.sequence = voted.sequence;
     for (std::size_t axis = 0; axis < max_axes; ++axis)
         if (has_axis(voted.isolated_mask, axis)) opinion.excluded_from[axis] = std::min(voted.excluded_from[axis], voted.sequence);
-    opinion.excluded = opinion.excluded_from.mask();
+    opinion.excluded = opinion.isolated = opinion.own = opinion.excluded_from.mask();
     opinion.state = VerdictState::isolated;
     return opinion;
 }
@@ -54,27 +66,35 @@ Opinion opinion_of(const VotedAttitude& voted)
 Judgement judge(const Opinion& opinion, AxisMask excluded, AxisMask valid, bool leave_out_suspects, const BodyIncrement& body)
 {
     const AxisMask trusted = valid & ~excluded;
-    Judgement judgement{.used = trusted};
-    const bool overruled = (excluded & ~opinion.known) != 0;
+    Judgement judgement{.used = trusted, .saturated = opinion.state == VerdictState::saturated};
     const auto leave_out = [&](AxisMask axes) {
         if (axes == 0 || !body.well_conditioned(trusted & ~axes)) return false;
         judgement.used = trusted & ~axes;
         return true;
     };
     const auto doubt = [&] { judgement.doubt_rad = std::max(opinion.residual, 3 * std::sqrt(body.solve(trusted).variance)); };
+    const AxisMask suspects = opinion.suspects & ~excluded;
+    const bool overruled = (excluded & ~opinion.known) != 0;  // by a later verdict, which named the fault
 
-    if (!overruled && opinion.state == VerdictState::suspect) {
+    if (judgement.saturated) {
+        judgement.mode = AttitudeMode::untrusted;
+        doubt();
+    } else if (overruled) {
+        // The axis that caused the suspicion is excluded, so the others are used again.
+    } else if (opinion.state == VerdictState::suspect) {
         if (!leave_out_suspects || !leave_out(opinion.suspects)) doubt();
-    } else if (!overruled && opinion.state == VerdictState::ambiguous) {
+    } else if (opinion.state == VerdictState::provisional && suspects != 0) {
+        if (!leave_out_suspects || !leave_out(suspects)) doubt();
+    } else if (opinion.state == VerdictState::ambiguous) {
         if (!leave_out(opinion.candidates)) {
             judgement.mode = AttitudeMode::ambiguous;
             doubt();
         }
-    } else if (!overruled && opinion.state == VerdictState::blind) {
+    } else if (opinion.state == VerdictState::blind) {
         judgement.mode = AttitudeMode::untrusted;
         doubt();
     }
-    if (!body.solve(judgement.used).independent) judgement = {.used = 0, .mode = AttitudeMode::coasting};
+    if (!body.solve(judgement.used).independent) judgement = {.used = 0, .mode = AttitudeMode::coasting, .saturated = judgement.saturated};
     return judgement;
 }
 

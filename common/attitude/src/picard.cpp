@@ -58,7 +58,7 @@ HalfRate half_rate(const RateFit& fit, std::span<const Sample> samples)
 
 Quaternion picard(const HalfRate& rate)
 {
-    Curve slope{NodeRow::Zero(), rate.x, rate.y, rate.z};  // of q = 1
+    Curve slope{NodeRow::Zero(), rate.x, rate.y, rate.z};  // the slope at q = 1
     for (int left = iterations_for(std::sqrt(rate.largest_squared())); left > 1; --left) slope = times_rate(integrated(slope), rate);
 
     const NodeRow& weight = gauss_rule().weight;

@@ -23,7 +23,7 @@ HalfRate half_rate(const RateFit& fit, std::span<const Sample> samples);
 inline constexpr double largest_half_rate = 2;
 
 /// The rotation over the sample: the solution of q' = 1/2 q o omega, q(0) = 1, by Picard's iteration q <- 1 + 1/2 integral of
-/// q o omega (methods.md 003, "Functional iteration") on polynomials through the Gauss nodes, iterated until the a-priori
+/// q o omega (docs/methods/coning.md, "Functional iteration") on polynomials through the Gauss nodes, iterated until the a-priori
 /// bound U^i / i! of what is left is below rounding.
 Quaternion picard(const HalfRate& rate);
 

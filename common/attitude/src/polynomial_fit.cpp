@@ -51,7 +51,7 @@ struct WideRule {
         return product;
     }
 
-    // Of Lagrange polynomial l from 0 to `end`: its degree is below the rule's, so the rule is exact.
+    // The integral of Lagrange polynomial l from 0 to `end`: its degree is below the rule's, so the rule is exact.
     Wide integral(std::size_t l, Wide end) const
     {
         Wide sum = 0;

@@ -29,7 +29,7 @@ const GaussRule& gauss_rule();
 /// the polynomial that interpolates the accumulated angle at the samples' ends (Lagrange form, centred and scaled by the
 /// target's interval, long double).
 struct RateFit {
-    std::array<NodeRow, longest_memory> weight;  ///< of the samples fitted; the rest is not set
+    std::array<NodeRow, longest_memory> weight;  ///< one row for each sample fitted; the rest is not set
 };
 
 /// @param intervals  of the samples fitted, oldest first, 1 .. 12 of them, all above 0

@@ -22,14 +22,15 @@ struct ClassicEntry {
 };
 
 constexpr std::array classic_entries{
-    ClassicEntry{"single", ClassicRule::single, "phi = th", "methods.md 003"},
-    ClassicEntry{"previous", ClassicRule::previous, "phi = th + 1/12 th_previous x th", "methods.md 003; Savage 1998"},
-    ClassicEntry{"two-sample", ClassicRule::two_sample, "phi = th1 + th2 + 2/3 th1 x th2", "methods.md 003; Miller 1983"},
-    ClassicEntry{"three-sample", ClassicRule::three_sample, "phi = sum + (9/20 th1 + 27/20 th2) x th3", "methods.md 003; Ignagni 1990"},
+    ClassicEntry{"single", ClassicRule::single, "phi = th", "docs/methods/coning.md"},
+    ClassicEntry{"previous", ClassicRule::previous, "phi = th + 1/12 th_previous x th", "docs/methods/coning.md; Savage 1998"},
+    ClassicEntry{"two-sample", ClassicRule::two_sample, "phi = th1 + th2 + 2/3 th1 x th2", "docs/methods/coning.md; Miller 1983"},
+    ClassicEntry{"three-sample", ClassicRule::three_sample, "phi = sum + (9/20 th1 + 27/20 th2) x th3",
+                 "docs/methods/coning.md; Ignagni 1990"},
     ClassicEntry{"three-sample-miller", ClassicRule::three_sample_miller, "phi = sum + 9/20 th1 x th3 + 27/40 th2 x (th3 - th1)",
                  "Miller 1983"},
     ClassicEntry{"four-sample", ClassicRule::four_sample, "phi = sum + (54/105 th1 + 92/105 th2 + 214/105 th3) x th4",
-                 "methods.md 003; Lee, Yoon and others 1990"},
+                 "docs/methods/coning.md; Lee, Yoon and others 1990"},
 };
 
 // The N of "prefix-N", 1 .. longest_memory.
@@ -51,8 +52,8 @@ std::vector<UpdateEntry> update_catalogue()
     for (const auto& entry : classic_entries)
         entries.push_back({std::string(entry.name), std::string(entry.equation), std::string(entry.source)});
     const std::string equation = "q <- 1 + 1/2 integral of q o omega, omega the polynomial of degree N - 1 through N increments";
-    entries.push_back({"block-N", equation + ", every N samples", "methods.md 003, functional iteration; Wu 2018"});
-    entries.push_back({"window-N", equation + ", over the newest sample", "methods.md, which method when, 6"});
+    entries.push_back({"block-N", equation + ", every N samples", "docs/methods/coning.md; Wu 2018"});
+    entries.push_back({"window-N", equation + ", over the newest sample", "docs/methods/coning.md; Wu 2018"});
     return entries;
 }
 

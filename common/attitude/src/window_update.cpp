@@ -21,7 +21,7 @@ bool all_equal(std::span<const Sample> samples)
                                [reference](const Sample& s) { return std::abs(s.interval_s - reference) <= equal_within * reference; });
 }
 
-// How many samples tell something: differences of the rate shrink with their order as long as the samples resolve the motion, and grow
+// How many samples are worth fitting: differences of the rate shrink with their order as long as the samples resolve the motion, and grow
 // where they do not, or where noise is left. A sinusoid of frequency f gives |next| / |this| = 2 sin(pi f / fs) at every order, white noise
 // sqrt(3) and more. Differences that have grown to a third of the first ones would be felt: the polynomial ends before them.
 // Unequal intervals: divided differences of the angle at the samples' ends, in units of the mean interval (equal ones give the same).
@@ -46,7 +46,7 @@ std::size_t resolved_order(std::span<const Sample> samples, bool equal)
             squares += value[i].squaredNorm();
         }
         const double mean = squares / static_cast<double>(terms);
-        if (order == 2) first = mean;  // of the increments: the first of the rate
+        if (order == 2) first = mean;  // the increments' mean is the first difference of the rate
         if (order > 2 && mean > before && mean > felt * felt * first)
             return std::min(samples.size(), std::max(order - 1, order_when_unresolved));
         before = mean;

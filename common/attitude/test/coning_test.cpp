@@ -31,7 +31,7 @@ TEST(ConingDrift, of_the_window_of_ten_is_at_the_floor_from_the_first_row_on)
     EXPECT_LE(drift_deg_h("window-10", {60, 1, 100}), 1e-8);
 }
 
-// methods.md, "Coning drift in steady state", to the two digits printed there (for `previous` and `window-8` the rest is start-up).
+// docs/methods/coning.md, "Verified numbers", to the two digits printed there (for `previous` and `window-8` the rest is start-up).
 TEST(ConingDrift, of_the_classical_rules_is_as_tabulated)
 {
     struct Row {

@@ -1,5 +1,5 @@
 #include "allocation_count.hpp"
-#include "scenario.hpp"
+#include "checked_integrator.hpp"
 #include "quorient/messages/exclusions.hpp"
 #include "quorient/messages/meaning.hpp"
 
@@ -19,7 +19,7 @@ class AnIntegrator : public ::testing::Test {
 protected:
     geometry::SensorCluster cluster = cluster_of("cone-6", interval_s, 1e-6);
     Instrument instrument{cluster, motion};
-    Integrator integrator = integrator_for(cluster, motion);
+    CheckedIntegrator integrator = integrator_for(cluster, motion);
 
     double error() const { return angle_to(integrator.state(), instrument.attitude_after(integrator.state().sequence)); }
 };
@@ -82,7 +82,7 @@ TEST_F(AnIntegrator, applies_the_coning_term_of_a_gap_and_covers_what_is_left_by
     const ClassicConing brisk(30, 4);
     for (int lost = 1; lost <= 20; ++lost) {
         Instrument shaken(cluster, brisk);
-        Integrator bridging = integrator_for(cluster, brisk);
+        CheckedIntegrator bridging = integrator_for(cluster, brisk);
         for (int i = 0; i < 50; ++i) bridging.add(shaken.next());
         const std::uint64_t before = bridging.state().sequence;
         SensorFrame frame;
@@ -201,7 +201,7 @@ TEST_F(AnIntegrator, of_a_new_epoch_keeps_its_exclusions_and_is_lost_until_align
     EXPECT_EQ(after.excluded_from[3], 0u);
     EXPECT_LT(angle_to(after, from_array(before.attitude)), 0.02) << "the attitude goes on from where it was";
 
-    FaultVerdict late = isolating(15, 1, 2);  // of the old epoch
+    FaultVerdict late = isolating(15, 1, 2);  // a verdict of the old epoch
     integrator.apply(late);
     EXPECT_EQ(integrator.state().isolated_mask, axis_bit(3));
 }
@@ -242,14 +242,14 @@ TEST_F(AnIntegrator, that_restarts_takes_over_the_voted_attitude_and_its_exclusi
         for (int i = 0; i < 100; ++i) running.next();
         IntegratorSettings settings;
         settings.initialised = false;
-        Integrator fresh = Integrator::make(settings, cluster).value();
-        if (seed_first) fresh.seed(voted_at(running, 99));
+        CheckedIntegrator fresh = CheckedIntegrator::make(settings, cluster);
+        if (seed_first) fresh.on_voted(voted_at(running, 99));
         EXPECT_EQ(mode_of(fresh.state()), AttitudeMode::initialising);
         for (int i = 0; i < 20; ++i) {
             fresh.add(running.next());
             EXPECT_EQ(mode_of(fresh.state()), seed_first ? AttitudeMode::normal : AttitudeMode::initialising) << i;
         }
-        if (!seed_first) fresh.seed(voted_at(running, 110));  // in the middle of what it has heard: catches up
+        if (!seed_first) fresh.on_voted(voted_at(running, 110));  // in the middle of what it has heard: catches up
         const auto state = fresh.publish();
         EXPECT_EQ(mode_of(state), AttitudeMode::normal);
         EXPECT_EQ(state.seeded, 1);
@@ -271,7 +271,7 @@ protected:
         instrument.set_fault(2, 5, [](double increment, double) { return increment * 1.5; });
         for (int i = 0; i < 100; ++i) instrument.next();
         for (int i = 0; i < 20; ++i) add(VerdictState::suspect);
-        fresh.seed(voted_at(instrument, 110));
+        fresh.on_voted(voted_at(instrument, 110));
     }
 
     void add(VerdictState state)
@@ -281,6 +281,18 @@ protected:
         fresh.apply(verdict_on(frame.sequence, state));
     }
 
+    /// Two other lanes stand behind an attitude that isolates all axes but these.
+    void voters_let_go(AxisMask axes)
+    {
+        VotedAttitude voted = voted_at(instrument, 119);
+        voted.primary_lane = 1;
+        voted.level = octet(VoteLevel::degraded);
+        voted.isolated_mask = cluster.all() & ~axes;
+        voted.excluded_from.exclude(voted.isolated_mask, 5);
+        voted.excluded_from.readmit(axes);
+        fresh.on_voted(voted);
+    }
+
     static IntegratorSettings waiting()
     {
         IntegratorSettings settings;
@@ -288,7 +300,7 @@ protected:
         return settings;
     }
 
-    Integrator fresh = Integrator::make(waiting(), cluster).value();
+    CheckedIntegrator fresh = CheckedIntegrator::make(waiting(), cluster);
 };
 
 TEST_F(ATakeOver, is_not_undone_by_a_detector_that_was_away_at_the_onset)
@@ -312,10 +324,10 @@ TEST_F(ATakeOver, is_undone_by_a_detector_that_had_found_the_fault_itself)
 
 TEST_F(ATakeOver, is_undone_by_its_detector_once_the_voters_have_let_it_go)
 {
-    fresh.let_go(axis_bit(1));
+    voters_let_go(axis_bit(1));
     add(VerdictState::healthy);
     EXPECT_EQ(fresh.state().isolated_mask, axis_bit(2));
-    fresh.let_go(axis_bit(2));
+    voters_let_go(axis_bit(2));
     add(VerdictState::healthy);
     EXPECT_EQ(fresh.state().isolated_mask, 0u);
 }
@@ -324,12 +336,12 @@ TEST_F(AnIntegrator, whose_seed_does_not_connect_waits_for_another)
 {
     IntegratorSettings settings;
     settings.initialised = false;
-    Integrator fresh = Integrator::make(settings, cluster).value();
+    CheckedIntegrator fresh = CheckedIntegrator::make(settings, cluster);
     for (int i = 0; i < 50; ++i) instrument.next();
-    fresh.seed(voted_at(instrument, 40));  // frames 41 .. 49 will never come
+    fresh.on_voted(voted_at(instrument, 40));  // frames 41 .. 49 will never come
     fresh.add(instrument.next());
     EXPECT_EQ(mode_of(fresh.state()), AttitudeMode::initialising);
-    fresh.seed(voted_at(instrument, 52));  // of a frame still to come
+    fresh.on_voted(voted_at(instrument, 52));  // its frame is still to come
     fresh.add(instrument.next());
     EXPECT_EQ(mode_of(fresh.state()), AttitudeMode::initialising);
     fresh.add(instrument.next());
@@ -357,7 +369,7 @@ TEST_F(AnIntegrator, is_reset_by_command_and_announces_it)
 
 TEST_F(AnIntegrator, agrees_with_another_that_was_reset_to_the_same_attitude_at_another_frame)
 {
-    Integrator later = Integrator::make({}, cluster).value();
+    CheckedIntegrator later = CheckedIntegrator::make({}, cluster);
     Instrument same(cluster, motion);
     const Quaternion ordered = from_rotation_vector({0.1, -0.4, 0.3});
     for (int i = 0; i < 400; ++i) {
@@ -421,8 +433,8 @@ TEST(Integrator, runs_every_algorithm_and_rolls_it_back)
         settings.algorithm = algorithm;
         settings.history_s = 0.5;
         settings.initial_attitude = to_array(motion.attitude(0));
-        Integrator late = Integrator::make(settings, cluster).value();
-        Integrator at_once = Integrator::make(settings, cluster).value();
+        CheckedIntegrator late = CheckedIntegrator::make(settings, cluster);
+        CheckedIntegrator at_once = CheckedIntegrator::make(settings, cluster);
         Instrument instrument(cluster, motion);
         instrument.set_fault(4, 63, [](double z, auto) { return z + 0.01; });
         for (const auto& frame : record(instrument, 103)) {
@@ -443,7 +455,7 @@ TEST(Integrator, allocates_nothing_after_it_was_made)
     Instrument instrument(cluster, motion);
     instrument.set_fault(4, 100, [](double z, auto) { return z + 0.01; });
     const auto frames = record(instrument, 400);
-    Integrator integrator = integrator_for(cluster, motion, 1.5);
+    CheckedIntegrator integrator = integrator_for(cluster, motion, 1.5);
     const std::size_t before = test::allocation_count();
     for (const auto& frame : frames) {
         if (frame.sequence % 50 == 7) continue;  // gaps too
@@ -468,7 +480,7 @@ double sigma_ratio(const std::string& layout, AxisMask excluded, std::uint64_t s
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         Instrument noisy(cluster, motion);
         noisy.set_noise(sigma_rad, seed);
-        Integrator integrator = integrator_for(cluster, motion);
+        CheckedIntegrator integrator = integrator_for(cluster, motion);
         FaultVerdict verdict = verdict_on(0, VerdictState::isolated);
         for (std::size_t axis = 0; axis < cluster.size(); ++axis)
             if (has_axis(excluded, axis)) verdict.excluded_from[axis] = 100;

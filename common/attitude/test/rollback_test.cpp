@@ -1,4 +1,4 @@
-#include "scenario.hpp"
+#include "checked_integrator.hpp"
 #include "quorient/messages/meaning.hpp"
 
 #include <gtest/gtest.h>
@@ -60,9 +60,9 @@ int compare_with_undelayed(const std::string& layout, const Fault& fault, std::u
     instrument.set_fault(axis, onset, fault.distortion);
     const auto frames = record(instrument, onset + delay + 15);
 
-    Integrator late = integrator_for(cluster, motion, history_frames * interval_s);
-    Integrator at_once = integrator_for(cluster, motion, history_frames * interval_s);
-    Integrator never_used = integrator_for(cluster, motion, history_frames * interval_s);
+    CheckedIntegrator late = integrator_for(cluster, motion, history_frames * interval_s);
+    CheckedIntegrator at_once = integrator_for(cluster, motion, history_frames * interval_s);
+    CheckedIntegrator never_used = integrator_for(cluster, motion, history_frames * interval_s);
     never_used.apply(isolating(0, axis, 0));
     const std::string what = layout + ", " + fault.name + ", " + std::to_string(delay) + " frames late";
     for (const auto& frame : frames) {
@@ -99,7 +99,7 @@ template <class VerdictAt>
 AttitudeState run(const std::vector<SensorFrame>& frames, const geometry::SensorCluster& cluster, const VerdictAt& verdict_at,
                   bool rollback = true)
 {
-    Integrator integrator = integrator_for(cluster, motion, history_frames * interval_s, rollback);
+    CheckedIntegrator integrator = integrator_for(cluster, motion, history_frames * interval_s, rollback);
     for (const auto& frame : frames) {
         integrator.apply(verdict_at(frame.sequence));
         integrator.add(frame);
@@ -142,7 +142,7 @@ TEST_F(OneFault, leaves_no_error_behind_with_rollback_and_a_lasting_one_without)
 
 TEST_F(OneFault, is_announced_by_a_reset_that_turns_the_old_attitude_into_the_new)
 {
-    Integrator integrator = integrator_for(cluster, motion);
+    CheckedIntegrator integrator = integrator_for(cluster, motion);
     for (std::uint64_t sequence = 0; sequence < 90; ++sequence) {
         integrator.apply(verdict_on(sequence));
         integrator.add(frames[sequence]);
@@ -168,7 +168,7 @@ TEST_F(OneFault, is_announced_by_a_reset_that_turns_the_old_attitude_into_the_ne
 
 TEST_F(OneFault, that_is_named_before_the_frame_is_published_needs_no_reset)
 {
-    Integrator integrator = integrator_for(cluster, motion);
+    CheckedIntegrator integrator = integrator_for(cluster, motion);
     for (std::uint64_t sequence = 0; sequence < 100; ++sequence) {
         integrator.add(frames[sequence]);
         integrator.apply(sequence >= onset ? isolating(sequence, axis, onset) : verdict_on(sequence));
@@ -180,10 +180,10 @@ TEST_F(OneFault, that_is_named_before_the_frame_is_published_needs_no_reset)
 
 TEST_F(OneFault, reaching_past_the_history_is_counted_and_corrected_as_far_as_it_goes)
 {
-    Integrator shorter = integrator_for(cluster, motion, 10 * interval_s);
-    Integrator uncorrected = integrator_for(cluster, motion, 10 * interval_s, false);
+    CheckedIntegrator shorter = integrator_for(cluster, motion, 10 * interval_s);
+    CheckedIntegrator uncorrected = integrator_for(cluster, motion, 10 * interval_s, false);
     for (const auto& frame : frames) {
-        for (Integrator* integrator : {&shorter, &uncorrected}) {
+        for (CheckedIntegrator* integrator : {&shorter, &uncorrected}) {
             integrator->apply(frame.sequence >= 95 ? isolating(frame.sequence, axis, onset) : verdict_on(frame.sequence));
             integrator->add(frame);
         }
@@ -211,7 +211,7 @@ TEST_F(OneFault, whose_onset_is_revised_is_taken_from_where_the_newest_verdict_s
 
 TEST_F(OneFault, readmitted_changes_no_attitude_by_itself)
 {
-    Integrator integrator = integrator_for(cluster, motion);
+    CheckedIntegrator integrator = integrator_for(cluster, motion);
     for (std::uint64_t sequence = 0; sequence < 90; ++sequence) {
         integrator.apply(sequence >= 80 ? isolating(sequence, axis, onset) : verdict_on(sequence));
         integrator.add(frames[sequence]);
@@ -246,7 +246,7 @@ TEST_F(OneFault, is_corrected_in_slices_while_new_frames_keep_coming)
     Instrument instrument(cluster, motion);
     instrument.set_fault(axis, 100, [](double z, auto) { return z + 1e-4; });
     const auto long_run = record(instrument, many + 100);
-    Integrator integrator = integrator_for(cluster, motion, many * interval_s);
+    CheckedIntegrator integrator = integrator_for(cluster, motion, many * interval_s);
     for (std::size_t i = 0; i < many; ++i) integrator.add(long_run[i]);
     const auto old = integrator.publish();
 
@@ -262,7 +262,7 @@ TEST_F(OneFault, is_corrected_in_slices_while_new_frames_keep_coming)
     }
     EXPECT_NEAR(static_cast<double>(frame - many), static_cast<double>(many - 100) / 128, 2);
 
-    Integrator at_once = integrator_for(cluster, motion, many * interval_s);
+    CheckedIntegrator at_once = integrator_for(cluster, motion, many * interval_s);
     at_once.apply(isolating(0, axis, 100));
     for (std::size_t i = 0; i < frame; ++i) at_once.add(long_run[i]);
     EXPECT_EQ(integrator.state().attitude, at_once.state().attitude);

@@ -126,17 +126,18 @@ inline FaultVerdict suspecting(std::uint64_t sequence, AxisMask axes)
     return verdict;
 }
 
-inline Integrator integrator_for(const geometry::SensorCluster& cluster, const ClassicConing& motion, double history_s = 1,
-                                 bool rollback = true)
+/// Settings with which an integrator starts at the true attitude.
+inline IntegratorSettings settings_for(const ClassicConing& motion, double history_s, bool rollback = true)
 {
     IntegratorSettings settings;
     settings.history_s = history_s;
     settings.rollback = rollback;
     settings.initial_attitude = to_array(motion.attitude(0));
-    return Integrator::make(settings, cluster).value();
+    return settings;
 }
 
-inline void finish(Integrator& integrator)
+template <class AnyIntegrator>
+void finish(AnyIntegrator& integrator)
 {
     while (integrator.work()) {
     }

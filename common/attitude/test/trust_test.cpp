@@ -1,4 +1,4 @@
-#include "scenario.hpp"
+#include "checked_integrator.hpp"
 #include "quorient/messages/exclusions.hpp"
 #include "quorient/messages/meaning.hpp"
 
@@ -20,15 +20,18 @@ std::vector<FaultVerdict> eventful_verdicts(std::mt19937_64& random, std::size_t
 {
     std::vector<FaultVerdict> verdicts;
     Exclusions from;
+    AxisMask isolated = all_axes(axes);
     for (std::uint64_t sequence = 0; sequence < 120; ++sequence) {
         const std::size_t axis = random() % axes;
         if (random() % 12 == 0) from[axis] = sequence - std::min<std::uint64_t>(sequence, random() % 40);  // isolated, or revised
         if (random() % 25 == 0) from[random() % axes] = never;                                             // re-admitted
-        constexpr std::array states{VerdictState::healthy, VerdictState::suspect,   VerdictState::isolated,
-                                    VerdictState::blind,   VerdictState::ambiguous, VerdictState::warming_up};
+        constexpr std::array states{VerdictState::healthy,   VerdictState::suspect,    VerdictState::isolated,    VerdictState::blind,
+                                    VerdictState::ambiguous, VerdictState::warming_up, VerdictState::provisional, VerdictState::saturated};
         FaultVerdict verdict = verdict_on(sequence, states[random() % 3 == 0 ? random() % states.size() : 2]);
         verdict.excluded_from = from;
         if (state_of(verdict) == VerdictState::warming_up) verdict.excluded_from = Exclusions{};
+        verdict.isolated_mask = verdict.excluded_from.mask() & isolated;  // the others are left out provisionally
+        if (random() % 10 == 0) isolated ^= axis_bit(random() % axes);
         verdict.suspect_mask = axis_bit(axis);
         verdict.candidate_count = 2;
         verdict.candidate_set[0] = axis_bit(axis);
@@ -50,7 +53,7 @@ TEST(Trust, converges_to_the_same_attitude_in_whatever_order_verdicts_come)
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
         std::mt19937_64 random(seed);
         const auto verdicts = eventful_verdicts(random, cluster.size());
-        Integrator in_order = integrator_for(cluster, motion);
+        CheckedIntegrator in_order = integrator_for(cluster, motion);
         std::size_t next = 0;
         for (const auto& frame : frames) {
             for (; next < verdicts.size() && verdicts[next].sequence <= frame.sequence; ++next) in_order.apply(verdicts[next]);
@@ -64,7 +67,7 @@ TEST(Trust, converges_to_the_same_attitude_in_whatever_order_verdicts_come)
             std::shuffle(shuffled.begin(), shuffled.end(), random);
             if (trial % 2 == 0)  // neighbours only: most arrive before or just after their frame
                 std::ranges::sort(shuffled, {}, [&](const FaultVerdict& v) { return v.sequence / 8; });
-            Integrator mixed = integrator_for(cluster, motion);
+            CheckedIntegrator mixed = integrator_for(cluster, motion);
             std::size_t heard = 0;
             for (const auto& frame : frames) {
                 for (std::size_t n = random() % 3; n > 0 && heard < shuffled.size() && shuffled[heard].sequence <= frame.sequence + 30; --n)
@@ -77,6 +80,7 @@ TEST(Trust, converges_to_the_same_attitude_in_whatever_order_verdicts_come)
             ASSERT_EQ(mixed.state().attitude, in_order.state().attitude) << "seed " << seed << ", trial " << trial;
             ASSERT_EQ(mixed.state().angle_sigma_rad, in_order.state().angle_sigma_rad) << "seed " << seed << ", trial " << trial;
             ASSERT_EQ(mixed.state().excluded_from, in_order.state().excluded_from) << "seed " << seed << ", trial " << trial;
+            ASSERT_EQ(mixed.state().isolated_mask, in_order.state().isolated_mask) << "seed " << seed << ", trial " << trial;
         }
     }
     std::printf("%d interleavings converged\n", interleavings);
@@ -86,7 +90,7 @@ TEST(Trust, is_latched_through_warm_up_ambiguity_blindness_and_silence)
 {
     const auto cluster = cluster_of("dodecahedron", interval_s, 1e-6);
     const auto frames = record(Instrument(cluster, motion), 30);
-    Integrator integrator = integrator_for(cluster, motion);
+    CheckedIntegrator integrator = integrator_for(cluster, motion);
     for (const auto& frame : frames) {
         if (frame.sequence == 5) integrator.apply(isolating(5, 3, 4));
         if (frame.sequence == 10) integrator.apply(verdict_on(10, VerdictState::warming_up));
@@ -105,7 +109,7 @@ TEST(Trust, of_another_epoch_is_ignored_if_old_and_kept_if_new)
 {
     const auto cluster = cluster_of("dodecahedron", interval_s, 1e-6);
     auto frames = record(Instrument(cluster, motion), 10);
-    Integrator integrator = integrator_for(cluster, motion);
+    CheckedIntegrator integrator = integrator_for(cluster, motion);
     FaultVerdict early = isolating(0, 1, 0);  // before its epoch's first frame
     integrator.apply(early);
     integrator.add(frames[0]);
@@ -128,7 +132,7 @@ double largest_error_with_hard_over(const std::string& layout, std::size_t axis,
     settings.history_s = 1;
     settings.initial_attitude = to_array(motion.attitude(0));
     settings.leave_out_suspects = leave_out;
-    Integrator integrator = Integrator::make(settings, cluster).value();
+    CheckedIntegrator integrator = CheckedIntegrator::make(settings, cluster);
     double largest = 0;
     for (std::uint64_t sequence = 0; sequence < onset + 10; ++sequence) {
         integrator.apply(sequence < onset       ? verdict_on(sequence)
@@ -165,7 +169,7 @@ TEST(Suspect, that_turns_out_healthy_leaves_nothing_to_undo)
 {
     const auto cluster = cluster_of("dodecahedron", interval_s, 1e-6);
     const auto frames = record(Instrument(cluster, motion), 20);
-    Integrator integrator = integrator_for(cluster, motion);
+    CheckedIntegrator integrator = integrator_for(cluster, motion);
     for (const auto& frame : frames) {
         integrator.apply(frame.sequence == 8 ? suspecting(8, axis_bit(2)) : verdict_on(frame.sequence));
         integrator.add(frame);
@@ -180,8 +184,8 @@ TEST(Suspect, without_a_name_changes_no_axis_and_enlarges_the_standard_deviation
 {
     const auto cluster = cluster_of("dodecahedron", interval_s, 1e-6);
     const auto frames = record(Instrument(cluster, motion), 20);
-    Integrator doubting = integrator_for(cluster, motion);
-    Integrator calm = integrator_for(cluster, motion);
+    CheckedIntegrator doubting = integrator_for(cluster, motion);
+    CheckedIntegrator calm = integrator_for(cluster, motion);
     for (const auto& frame : frames) {
         FaultVerdict verdict = suspecting(frame.sequence, 0);
         verdict.residual[1] = 1e-4;
@@ -208,14 +212,14 @@ FaultVerdict ambiguous(std::uint64_t sequence, AxisMask first, AxisMask second)
 TEST(Ambiguity, leaves_out_all_candidates_if_the_rest_can_do_it_and_says_so_if_not)
 {
     const auto six = cluster_of("dodecahedron", interval_s, 1e-6);
-    Integrator enough = integrator_for(six, motion);
+    CheckedIntegrator enough = integrator_for(six, motion);
     enough.apply(ambiguous(0, axis_bit(0), axis_bit(5)));
     enough.add(Instrument(six, motion).next());
     EXPECT_EQ(enough.state().used_mask, six.all() & ~(axis_bit(0) | axis_bit(5)));
     EXPECT_EQ(mode_of(enough.state()), AttitudeMode::normal);
 
     const auto four = cluster_of("cone-4", interval_s, 1e-6);
-    Integrator few = integrator_for(four, motion);
+    CheckedIntegrator few = integrator_for(four, motion);
     few.apply(ambiguous(0, axis_bit(0), axis_bit(1)));
     few.add(Instrument(four, motion).next());
     EXPECT_EQ(few.state().used_mask, four.all());
@@ -228,7 +232,7 @@ TEST(Ambiguity, is_resolved_in_the_past_when_the_culprit_is_named)
     Instrument instrument(cluster, motion);
     instrument.set_fault(1, 50, [](double z, auto) { return z + 0.01; });
     const auto frames = record(instrument, 80);
-    Integrator integrator = integrator_for(cluster, motion);
+    CheckedIntegrator integrator = integrator_for(cluster, motion);
     for (const auto& frame : frames) {
         if (frame.sequence < 50) integrator.apply(verdict_on(frame.sequence));
         else if (frame.sequence < 70) integrator.apply(ambiguous(frame.sequence, axis_bit(0), axis_bit(1)));
@@ -245,7 +249,7 @@ TEST(Blindness, keeps_the_last_trusted_axes_and_is_not_to_be_trusted)
 {
     const auto cluster = cluster_of("dodecahedron", interval_s, 1e-6);
     const auto frames = record(Instrument(cluster, motion), 3);
-    Integrator integrator = integrator_for(cluster, motion);
+    CheckedIntegrator integrator = integrator_for(cluster, motion);
     integrator.apply(isolating(0, 2, 0));
     integrator.add(frames[0]);
     integrator.apply(verdict_on(1, VerdictState::blind));

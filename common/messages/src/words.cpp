@@ -62,6 +62,7 @@ constexpr std::array events{
     Word{EventCode::other_contract, "OTHER_CONTRACT"},
     Word{EventCode::security, "SECURITY"},
     Word{EventCode::overloaded, "OVERLOADED"},
+    Word{EventCode::identity_expires, "IDENTITY_EXPIRES"},
 };
 
 constexpr std::array roles{Word{ServiceRole::sensor, "sensor"}, Word{ServiceRole::detector, "detector"},

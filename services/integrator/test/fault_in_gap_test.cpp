@@ -4,7 +4,7 @@
 #include "integrator_service.hpp"
 #include "detector_service.hpp"
 #include "quorient/messages/meaning.hpp"
-#include "quorient/voting/agreement.hpp"
+#include "quorient/rotation/quaternion.hpp"
 
 #include <gtest/gtest.h>
 

@@ -113,6 +113,7 @@ enum class EventCode : std::uint8_t {
     other_contract = 56,  // a peer speaks another version of the wire contract
     security = 57,        // a peer or a sample was refused
     overloaded = 58,      // frames are skipped, since this machine cannot carry the rate
+    identity_expires = 60,  // in less than 30 days
 };
 
 enum class ServiceState : std::uint8_t { unknown = 0, starting = 1, ready = 2, running = 3, stopping = 4 };
