@@ -71,8 +71,8 @@ void VoterService::drain()
         voted_.publish(owned);
     }
     while (brain_.next_output(output_)) {
-        stamp(output_.attitude);
-        outputs_.publish(output_.attitude);
+        stamp(output_);
+        outputs_.publish(output_);
         ++node_.status().published;
         node_.set_state(ServiceState::running);
     }

@@ -27,7 +27,7 @@ private:
     bus::Subscription<AttitudeState>* attitudes_ = nullptr;
     runtime::Timer& poll_timer_;
     voting::Voter brain_;
-    voting::Output output_;
+    VotedAttitude output_;
     std::int64_t arrival_ns_ = 0;
     std::optional<Ros2Output> ros2_;
 };

@@ -1,5 +1,6 @@
-#include "quorient/voting/agreement.hpp"
+#include "agreement.hpp"
 
+#include "quorient/messages/left_out.hpp"
 #include "quorient/messages/sample_time.hpp"
 
 #include <algorithm>
@@ -23,6 +24,7 @@ bool is_sound(const AttitudeState& sample)
 
 bool Agreement::agree(std::size_t a, const AttitudeState& of_a, std::size_t b, const AttitudeState& of_b, double sigma_limit) const
 {
+    if (((of_a.isolated_mask & ~left_out_mask(of_b)) | (of_b.isolated_mask & ~left_out_mask(of_a))) != 0) return false;
     const double sigma = std::hypot(std::min(of_a.angle_sigma_rad, sigma_limit), std::min(of_b.angle_sigma_rad, sigma_limit));
     const double gate_rad = agreement_rad_ + agreement_sigmas_ * sigma;
     return angle_between(of_a.attitude, of_b.attitude) <= (apart_.test(pair(a, b)) ? gate_rad / 2 : gate_rad);
@@ -30,7 +32,7 @@ bool Agreement::agree(std::size_t a, const AttitudeState& of_a, std::size_t b, c
 
 void Agreement::remember(std::size_t a, const AttitudeState& of_a, std::size_t b, const AttitudeState& of_b, double sigma_limit)
 {
-    apart_.set(pair(a, b), !agree(a, of_a, b, of_b, sigma_limit));
+    if (left_out_mask(of_a) == left_out_mask(of_b)) apart_.set(pair(a, b), !agree(a, of_a, b, of_b, sigma_limit));
 }
 
 void Agreement::forget(std::size_t lane)

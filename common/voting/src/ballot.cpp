@@ -1,6 +1,7 @@
-#include "quorient/voting/ballot.hpp"
+#include "ballot.hpp"
 
 #include "quorient/messages/codes.hpp"
+#include "quorient/messages/left_out.hpp"
 #include "quorient/messages/meaning.hpp"
 
 #include <algorithm>
@@ -28,7 +29,7 @@ public:
         if (eligible_ == 0) return ballot_;
         ballot_.isolated = winning_isolation();
         for (LaneIndex lane = 0; lane < paper_.lanes; ++lane) {
-            if (has_lane(eligible_, lane) && paper_.sample[lane]->isolated_mask == ballot_.isolated) group_ |= lane_bit(lane);
+            if (has_lane(eligible_, lane) && is_in_group(*paper_.sample[lane])) group_ |= lane_bit(lane);
         }
         ballot_.several_groups = group_ != eligible_;
         for (LaneIndex lane = 0; lane < paper_.lanes; ++lane) {
@@ -36,9 +37,12 @@ public:
         }
         const LaneIndex primary = choose();
         ballot_.primary = primary;
-        ballot_.backed = is_majority(backers_[primary]);
-        ballot_.agreeing = agreeing_with(primary);
-        ballot_.vouching = backers_[primary];
+        ballot_.left_out = left_out_mask(*paper_.sample[primary]);
+        for (LaneIndex lane = 0; lane < paper_.lanes; ++lane) {
+            if (!has_lane(ballot_.heard, lane)) continue;
+            count_vote(ballot_, lane, *paper_.sample[lane], *paper_.sample[primary], !has_lane(paper_.blocked, lane), agreement_);
+        }
+        ballot_.backed = is_majority(ballot_.vouching);
         ballot_.spread_rad = spread(ballot_.vouching);
         return ballot_;
     }
@@ -95,15 +99,19 @@ private:
         return winner;
     }
 
+    /// It isolates what the group does, or leaves some of that out provisionally.
+    bool is_in_group(const AttitudeState& sample) const
+    {
+        return (sample.isolated_mask & ~ballot_.isolated) == 0 && (ballot_.isolated & ~left_out_mask(sample)) == 0;
+    }
+
     LaneMask agreeing_with(LaneIndex lane) const
     {
         LaneMask lanes = lane_bit(lane);
         const AttitudeState& own = *paper_.sample[lane];
         for (LaneIndex other = 0; other < paper_.lanes; ++other) {
             if (other == lane || !has_lane(ballot_.heard, other)) continue;
-            const AttitudeState& theirs = *paper_.sample[other];
-            if (theirs.isolated_mask == own.isolated_mask && agreement_.agree(lane, own, other, theirs, ballot_.sigma_limit))
-                lanes |= lane_bit(other);
+            if (agreement_.agree(lane, own, other, *paper_.sample[other], ballot_.sigma_limit)) lanes |= lane_bit(other);
         }
         return lanes;
     }
@@ -114,9 +122,19 @@ private:
     {
         if (is_majority(backers_[lane])) return false;
         for (LaneIndex other = 0; other < paper_.lanes; ++other) {
-            if (has_lane(group_, other) && !has_lane(backers_[lane], other) && is_majority(backers_[other])) return true;
+            const bool apart = has_lane(group_, other) && !has_lane(backers_[lane], other) && is_majority(backers_[other]);
+            if (apart && !may_be_late(other, lane)) return true;
         }
         return false;
+    }
+
+    /// `lane` leaves out a reported axis that `other` still uses: `other` may find the fault later. It must not leave out another reported
+    /// axis that `lane` uses.
+    bool may_be_late(LaneIndex other, LaneIndex lane) const
+    {
+        const AxisMask others = left_out_mask(*paper_.sample[other]);
+        const AxisMask own = left_out_mask(*paper_.sample[lane]);
+        return paper_.settling && (own & ~others & paper_.corroborated) != 0 && (others & ~own & paper_.corroborated) == 0;
     }
 
     LaneIndex choose() const
@@ -190,6 +208,16 @@ int distrust(const AttitudeState& sample)
 bool is_majority(LaneMask lanes, LaneMask seeded, bool unseeded_remain, std::size_t majority)
 {
     return static_cast<std::size_t>(std::popcount(lanes)) >= majority && (!unseeded_remain || (lanes & ~seeded) != 0);
+}
+
+void count_vote(Ballot& ballot, LaneIndex lane, const AttitudeState& sample, const AttitudeState& primary, bool may_vouch,
+                const Agreement& agreement)
+{
+    ballot.heard |= lane_bit(lane);
+    if (sample.seeded != 0) ballot.seeded |= lane_bit(lane);
+    if (lane != *ballot.primary && !agreement.agree(lane, sample, *ballot.primary, primary, ballot.sigma_limit)) return;
+    ballot.agreeing |= lane_bit(lane);
+    if (may_vouch && distrust(sample) == distrust(primary)) ballot.vouching |= lane_bit(lane);
 }
 
 Ballot count(const BallotPaper& paper, const Agreement& agreement)

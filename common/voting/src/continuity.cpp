@@ -1,4 +1,4 @@
-#include "quorient/voting/continuity.hpp"
+#include "continuity.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -51,7 +51,7 @@ Quaternion Continuity::rotation_to(const AttitudeState& sample, const AttitudeSt
     if (before != nullptr && sample.reset_counter - before->reset_counter <= 1) {
         const Quaternion change = product(before->attitude, conjugate(attitude_));
         return before->reset_counter == sample.reset_counter ? change : product(sample.reset_rotation, change);
-    }  // of several resets the lane tells only the last
+    }  // a lane reports only the last of several resets
     const double seconds = static_cast<double>(sample.sample_time_ns - sample_time_ns_) * 1e-9;
     const bool same_stream = sample.epoch == identity_.epoch && seconds >= 0 && seconds <= extrapolation_s;
     const Quaternion expected = same_stream ? turned(attitude_, rate_rad_s_, seconds) : attitude_;

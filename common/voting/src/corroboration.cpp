@@ -1,8 +1,9 @@
-#include "quorient/voting/corroboration.hpp"
+#include "corroboration.hpp"
 
 #include "quorient/messages/codes.hpp"
+#include "quorient/messages/left_out.hpp"
 #include "quorient/messages/meaning.hpp"
-#include "quorient/voting/timeline.hpp"
+#include "timeline.hpp"
 
 #include <algorithm>
 
@@ -20,7 +21,7 @@ AxisMask candidates(const FaultVerdict& verdict)
 bool sees_trouble(const FaultVerdict& verdict)
 {
     const auto state = state_of(verdict);
-    return state == VerdictState::suspect || state == VerdictState::ambiguous;
+    return state == VerdictState::suspect || state == VerdictState::ambiguous || state == VerdictState::provisional;
 }
 
 bool is_tested(const FaultVerdict& verdict)
@@ -41,12 +42,14 @@ bool Corroboration::on_verdict(std::size_t lane, const FaultVerdict& verdict, Id
     const bool trouble = sees_trouble(verdict);
     const AxisMask all = all_axes(max_axes);
     const AxisMask isolated = verdict.isolated_mask & all;
-    const bool onset = (trouble && !voice.troubled) || isolated != voice.isolated;
+    const AxisMask provisional = left_out_mask(verdict) & ~verdict.isolated_mask & all;
+    const bool onset = (trouble && !voice.troubled) || isolated != voice.isolated || (provisional & ~voice.provisional) != 0;
     voice.identity = identity;
     voice.heard_ns = now_ns;
     voice.heard = true;
     voice.troubled = trouble;
     voice.isolated = isolated;
+    voice.provisional = provisional;
     voice.suspected = (verdict.suspect_mask | candidates(verdict)) & all;
     voice.exhausted = is_tested(verdict) && verdict.detectable_remaining == 0;
     if (onset) open(voice, identity, reported(voice, now_ns), now_ns);
@@ -57,9 +60,11 @@ void Corroboration::on_sample(std::size_t lane, const AttitudeState& sample, std
 {
     Voice& voice = voice_[lane];
     const AxisMask all = all_axes(max_axes);
-    const bool onset = voice.applied != (sample.isolated_mask & all) || (sample.suspect_mask & all & ~voice.doubted) != 0;
-    voice.applied = sample.isolated_mask & all;
-    voice.doubted = sample.suspect_mask & all;
+    const AxisMask applied = sample.isolated_mask & all;
+    const AxisMask doubted = (sample.suspect_mask | (left_out_mask(sample) & ~sample.isolated_mask)) & all;
+    const bool onset = voice.applied != applied || (doubted & ~voice.doubted) != 0;
+    voice.applied = applied;
+    voice.doubted = doubted;
     if (onset) open(voice, identity_of(sample), voice.applied | voice.doubted, now_ns);
 }
 
@@ -92,9 +97,9 @@ bool Corroboration::speaks(std::size_t lane, std::int64_t now_ns) const
     return fresh(voice_[lane], now_ns);
 }
 
-bool Corroboration::knows_better(std::size_t lane, AxisMask isolated, std::int64_t now_ns) const
+bool Corroboration::knows_better(std::size_t lane, AxisMask left_out, std::int64_t now_ns) const
 {
-    const AxisMask more = (voice_[lane].isolated | voice_[lane].applied) & ~isolated;
+    const AxisMask more = (voice_[lane].isolated | voice_[lane].applied) & ~left_out;
     return more != 0 && (more & corroborated(now_ns)) != 0;
 }
 
@@ -105,7 +110,7 @@ bool Corroboration::redundancy_exhausted(std::size_t lane) const
 
 AxisMask Corroboration::reported(const Voice& voice, std::int64_t now_ns) const
 {
-    const AxisMask suspected = fresh(voice, now_ns) ? voice.suspected : 0;
+    const AxisMask suspected = fresh(voice, now_ns) ? voice.suspected | voice.provisional : 0;
     return voice.isolated | voice.applied | voice.doubted | suspected;
 }
 

@@ -1,5 +1,7 @@
 #include "lane_board.hpp"
 
+#include "quorient/messages/left_out.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -78,14 +80,13 @@ void LaneBoard::publish(Identity identity, const Ballot& ballot, bool unseeded_r
 {
     ++published_;
     Record& made = record(0);
-    made = {identity, *ballot.primary, ballot, unseeded_remain, true};
+    made = {identity, ballot, unseeded_remain, true};
     for (LaneIndex a = 0; a < lanes_.size(); ++a) {
         if (!has_lane(ballot.heard, a)) continue;
         const AttitudeState& sample = *lanes_[a].at(identity);
-        if (a == made.primary || &sample == &lanes_[a].newest()) label(a, sample, made, now_ns);
+        if (a == *ballot.primary || &sample == &lanes_[a].newest()) label(a, sample, made, now_ns);
         for (LaneIndex b = a + 1; b < lanes_.size(); ++b) {
-            if (!has_lane(ballot.heard, b) || sample.isolated_mask != lanes_[b].at(identity)->isolated_mask) continue;
-            agreement_.remember(a, sample, b, *lanes_[b].at(identity), ballot.sigma_limit);
+            if (has_lane(ballot.heard, b)) agreement_.remember(a, sample, b, *lanes_[b].at(identity), ballot.sigma_limit);
         }
     }
     levels_.publish(ballot.vouching);
@@ -99,20 +100,12 @@ void LaneBoard::late_vote(LaneIndex index, const AttitudeState& sample, std::int
         Record& made = record(age);
         if (made.identity < identity) return;
         if (made.identity != identity) continue;
-        const AttitudeState* primary = lanes_[made.primary].at(identity);
+        const LaneIndex chosen = *made.ballot.primary;
+        const AttitudeState* primary = lanes_[chosen].at(identity);
         if (primary == nullptr) return;
-        made.ballot.heard |= lane_bit(index);
-        if (sample.seeded != 0) made.ballot.seeded |= lane_bit(index);
-        const bool agrees = sample.isolated_mask == made.ballot.isolated &&
-                            agreement_.agree(index, sample, made.primary, *primary, made.ballot.sigma_limit);
-        if (sample.isolated_mask == made.ballot.isolated) {
-            agreement_.remember(index, sample, made.primary, *primary, made.ballot.sigma_limit);
-        }
-        if (agrees) made.ballot.agreeing |= lane_bit(index);
-        if (agrees && !lanes_[index].blocked() && distrust(sample) == distrust(*primary)) {
-            made.ballot.vouching |= lane_bit(index);
-            levels_.late_vote(index, age);
-        }
+        count_vote(made.ballot, index, sample, *primary, !lanes_[index].blocked(), agreement_);
+        agreement_.remember(index, sample, chosen, *primary, made.ballot.sigma_limit);
+        if (has_lane(made.ballot.vouching, index)) levels_.late_vote(index, age);
         if (age == 0) label(index, sample, made, now_ns);
         return;
     }
@@ -135,7 +128,7 @@ void LaneBoard::judge(LaneIndex index, const Record& made, bool backed, Identity
     LaneTracker& lane = lanes_[index];
     const AttitudeState* sample = lane.at(made.identity);
     const bool agrees = has_lane(made.ballot.agreeing, index);
-    const bool comparable = sample != nullptr && sample->isolated_mask == made.ballot.isolated;
+    const bool comparable = sample != nullptr && left_out_mask(*sample) == made.ballot.left_out;
     const bool settling = corroboration_.settling(made.identity) || corroboration_.settling(newest);
     const unsigned contradicted = lane.judge(agrees, backed && comparable && !agrees, settling);
     if (contradicted >= disagreement_frames_ && lane.latched() != LaneExclusion::disagrees) {
@@ -177,9 +170,9 @@ void LaneBoard::latch(LaneIndex index, LaneExclusion why, Identity identity, Axi
 
 void LaneBoard::label(LaneIndex index, const AttitudeState& sample, const Record& made, std::int64_t now_ns)
 {
-    const AttitudeState* primary = lanes_[made.primary].at(made.identity);
+    const AttitudeState* primary = lanes_[*made.ballot.primary].at(made.identity);
     const LaneExclusion before = lanes_[index].why();
-    const AxisMask apart = sample.isolated_mask ^ made.ballot.isolated;
+    const AxisMask apart = (sample.isolated_mask & ~made.ballot.left_out) | (made.ballot.isolated & ~left_out_mask(sample));
     const bool was_apart = before == LaneExclusion::uncorroborated || before == LaneExclusion::outvoted;
     LaneExclusion why = LaneExclusion::none;
     if (primary != nullptr && distrust(sample) > distrust(*primary)) {

@@ -1,19 +1,19 @@
 #pragma once
 
+#include "agreement.hpp"
+#include "ballot.hpp"
+#include "corroboration.hpp"
+#include "lane_tracker.hpp"
+#include "levels.hpp"
 #include "narrator.hpp"
-#include "quorient/voting/agreement.hpp"
-#include "quorient/voting/ballot.hpp"
-#include "quorient/voting/corroboration.hpp"
-#include "quorient/voting/lane_tracker.hpp"
-#include "quorient/voting/levels.hpp"
-#include "quorient/voting/timeline.hpp"
+#include "timeline.hpp"
 
 #include <array>
 #include <vector>
 
 namespace quorient::voting {
 
-/// How every lane stands to the output: who is excluded and why, who vouched for which published frame, who may return.
+/// How every lane stands to the output: whether it is excluded and why, for which published frames it vouched, whether it may return.
 class LaneBoard {
 public:
     LaneBoard(const VoterSettings& settings, std::size_t majority, Corroboration& corroboration, Narrator& narrator);
@@ -38,14 +38,14 @@ public:
     /// Where every lane is excluded, those that were merely silent or invalid and deliver again count at once: better one than none.
     void release_last_resort(const Timeline& timeline);
 
-    /// The frame is published with this outcome. Labels the lanes and remembers who vouched.
+    /// The frame is published with this outcome. Labels the lanes and remembers which ones vouched.
     void publish(Identity identity, const Ballot& ballot, bool unseeded_remain, std::int64_t now_ns);
 
     /// A sample of a frame that is already published: it still vouches.
     void late_vote(LaneIndex index, const AttitudeState& sample, std::int64_t now_ns);
 
-    /// Draws the conclusions from the frame that nobody will vouch for any more. After the output is out, so that it never
-    /// speaks of a primary as excluded.
+    /// Draws the conclusions from the frame for which no more votes come. After the output is out, so that it never names an excluded
+    /// primary.
     void close(Identity newest);
 
     void start_levels_over() { levels_.clear(); }
@@ -54,10 +54,12 @@ public:
     LaneMask excluded() const;
     bool unseeded_remain() const;
 
+    /// @returns nullptr while this agrees with itself, otherwise what is wrong. For tests.
+    const char* broken_invariant() const;
+
 private:
     struct Record {
         Identity identity;
-        LaneIndex primary = 0;
         Ballot ballot;
         bool unseeded_remain = true;
         bool open = false;
@@ -66,6 +68,7 @@ private:
     static constexpr std::size_t remembered = 64;
 
     Record& record(std::uint64_t age) { return records_[(published_ - 1 - age) % remembered]; }
+    const Record& record(std::uint64_t age) const { return records_[(published_ - 1 - age) % remembered]; }
     void latch(LaneIndex index, LaneExclusion why, Identity identity, AxisMask axes);
     void label(LaneIndex index, const AttitudeState& sample, const Record& record, std::int64_t now_ns);
     void set_label(LaneIndex index, LaneExclusion why, Identity identity, AxisMask axes);

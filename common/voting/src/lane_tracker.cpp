@@ -1,4 +1,4 @@
-#include "quorient/voting/lane_tracker.hpp"
+#include "lane_tracker.hpp"
 
 namespace quorient::voting {
 

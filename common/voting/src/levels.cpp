@@ -1,4 +1,4 @@
-#include "quorient/voting/levels.hpp"
+#include "levels.hpp"
 
 #include <algorithm>
 #include <bit>

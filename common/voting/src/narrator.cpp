@@ -82,8 +82,8 @@ void Narrator::level(Identity identity, VoteLevel before, VoteLevel now, LaneMas
                            : now == VoteLevel::lost   ? EventCode::lost
                                                       : EventCode::level_changed;
     VoterEvent& event = add(code, severity, identity);
-    write(event.text, "level %s -> %s: %d of %zu lanes stand behind the output", to_string(before).data(), to_string(now).data(), std::popcount(standing),
-          lanes_.size());
+    write(event.text, "level %s -> %s: %d of %zu lanes stand behind the output", to_string(before).data(), to_string(now).data(),
+          std::popcount(standing), lanes_.size());
 }
 
 void Narrator::ownership(Identity identity, bool taken_over)

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "quorient/voting/ballot.hpp"
-#include "quorient/voting/bounded_queue.hpp"
+#include "ballot.hpp"
+#include "bounded_queue.hpp"
 #include "quorient/voting/voter.hpp"
 
 namespace quorient::voting {

@@ -1,6 +1,6 @@
-#include "quorient/voting/newcomers.hpp"
+#include "newcomers.hpp"
 
-#include "quorient/voting/timeline.hpp"
+#include "timeline.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,25 +1,48 @@
-#include "quorient/voting/owned_stream.hpp"
+#include "owned_stream.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace quorient::voting {
+namespace {
+
+/// A voter that starts waits so long to catch up with the others before it writes nevertheless.
+constexpr unsigned longest_lag_frames = 400;
+
+}  // namespace
+
+OwnedStream::OwnedStream(const VoterSettings& settings, const Durations& durations)
+    : interval_ns_(durations.interval_ns),
+      lease_ns_(durations.lease_ns),
+      good_frames_required_(settings.good_frames_before_owning),
+      listen_frames_(static_cast<unsigned>(settings.listen_s / settings.interval_s)),
+      not_before_ns_(std::numeric_limits<std::int64_t>::min())
+{
+}
 
 void OwnedStream::push(const VotedAttitude& output, bool repeated, std::int64_t now_ns)
 {
-    Waiting& waiting = waiting_.push();
-    waiting.output = output;
-    waiting.due_ns = now_ns + interval_ns_;
-    waiting.repeated = repeated;
+    waiting_.push() = {output, now_ns + interval_ns_, repeated};
 }
 
-void OwnedStream::release(VoterRanking& ranking, std::int64_t now_ns)
+void OwnedStream::release(const OtherVoters& others, std::int64_t now_ns)
 {
-    const VotedAttitude* leader = ranking.leader(now_ns);
+    const OtherVoter* leader = others.leader(now_ns);
+    consider_right(others, now_ns);
     for (const Waiting* first = waiting_.front(); first != nullptr; first = waiting_.front()) {
-        if (leader != nullptr && !has_published(*leader, *first) && now_ns < first->due_ns) return;
-        if (ranking.may_write({identity_of(first->output), first->output.output_sequence}, first->repeated)) ready_.push() = first->output;
+        const bool leader_was_here = leader == nullptr || leader->position().identity >= identity_of(first->output);
+        if (!leader_was_here && now_ns < first->due_ns) return;
+        if (may_write(*first, others)) ready_.push() = first->output;
         waiting_.drop_front();
+        consider_right(others, now_ns);
     }
+}
+
+void OwnedStream::start_over(std::int64_t now_ns)
+{
+    right_ = Right::proving;
+    good_frames_ = held_ = 0;
+    not_before_ns_ = now_ns + lease_ns_;
 }
 
 std::int64_t OwnedStream::deadline_ns() const
@@ -28,9 +51,39 @@ std::int64_t OwnedStream::deadline_ns() const
     return first == nullptr ? std::numeric_limits<std::int64_t>::max() : first->due_ns;
 }
 
-bool OwnedStream::has_published(const VotedAttitude& leader, const Waiting& waiting)
+void OwnedStream::consider_right(const OtherVoters& others, std::int64_t now_ns)
 {
-    return identity_of(leader) >= identity_of(waiting.output);
+    const bool discovered = !others.stronger_exist() || others.stronger_seen() || listened_ >= listen_frames_;
+    const bool proven = discovered && good_frames_ >= good_frames_required_ && now_ns >= not_before_ns_;
+    if (right_ == Right::proving && proven) right_ = Right::holding;
+}
+
+/// Asked once for every output, in order.
+bool OwnedStream::may_write(const Waiting& waiting, const OtherVoters& others)
+{
+    const Position position = position_of(waiting.output);
+    if (right_ == Right::holding && !must_hold(position.identity, others)) right_ = Right::writing;
+    if (right_ != Right::writing) {
+        held_ += right_ == Right::holding ? 1 : 0;
+        good_frames_ += waiting.repeated ? 0 : 1;
+        listened_ += waiting.repeated ? 0 : 1;
+        written_ = std::max(written_, others.reached());
+        return false;
+    }
+    const bool forward =
+        waiting.repeated ? position > written_ && position.identity >= others.reached().identity : position.identity > written_.identity;
+    if (forward) written_ = position;
+    return forward;
+}
+
+/// A weaker voter has published this frame: the first frame of a new owner would be a step back for readers. A weaker voter that is merely
+/// quicker must not keep the owner away for good; with one that is farther by frames, the owner has to catch up first.
+bool OwnedStream::must_hold(Identity identity, const OtherVoters& others) const
+{
+    const Identity theirs = others.weaker_reached();
+    if (identity > theirs) return false;
+    const bool lags = theirs.epoch > identity.epoch || theirs.sequence > identity.sequence + 1;
+    return held_ < (lags ? longest_lag_frames : good_frames_required_);
 }
 
 }  // namespace quorient::voting

@@ -1,4 +1,4 @@
-#include "quorient/voting/timeline.hpp"
+#include "timeline.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -83,7 +83,7 @@ TEST(Isolation, seen_by_one_detector_alone_cannot_move_the_output)
                 scene.at(Scene::time_of(sequence), lane == dreamer ? moved(sample, 0.3) : sample);
             }
         }
-        for (const Output& output : scene.outputs) EXPECT_EQ(output.attitude.attitude, truth(output.attitude.sequence));
+        for (const VotedAttitude& output : scene.outputs) EXPECT_EQ(output.attitude, truth(output.sequence));
         EXPECT_EQ(scene.last().isolated_mask, 0U);
         EXPECT_EQ(scene.why(dreamer), LaneExclusion::uncorroborated);
         EXPECT_LE(changes(scene), dreamer == 0 ? 1U : 0U);
@@ -97,9 +97,9 @@ TEST(Isolation, that_a_second_detector_suspects_moves_the_output_at_once)
     fault.suspected = {53, 51, 50};
     fault.isolated = {58, 56, 52};  // lane c is first; b suspects already
     fault.play(scene, 0, 99);
-    for (const Output& output : scene.outputs) {
-        if (output.attitude.sequence < 53) continue;  // c speaks last: frame 52 went out before it did
-        EXPECT_EQ(output.attitude.attitude, truth(output.attitude.sequence)) << "frame " << output.attitude.sequence;
+    for (const VotedAttitude& output : scene.outputs) {
+        if (output.sequence < 53) continue;  // c speaks last: frame 52 went out before it did
+        EXPECT_EQ(output.attitude, truth(output.sequence)) << "frame " << output.sequence;
     }
     EXPECT_EQ(changes(scene), 1U);
     EXPECT_EQ(scene.last().primary_lane, 3U);
@@ -132,11 +132,11 @@ TEST(Isolation, that_came_first_and_rightly_is_never_expelled_by_two_late_ones)
             fault.isolated[first] = 52;
             fault.drift_rad = 1e-4;
             fault.play(scene, 0, late + 99);
-            for (const Output& output : scene.outputs) {
-                EXPECT_NE(output.attitude.excluded_why[first], octet(LaneExclusion::disagrees))
+            for (const VotedAttitude& output : scene.outputs) {
+                EXPECT_NE(output.excluded_why[first], octet(LaneExclusion::disagrees))
                     << "late by " << late - 52;
-                if (output.attitude.sequence < late - 2) continue;
-                EXPECT_EQ(output.attitude.attitude, truth(output.attitude.sequence)) << "from the frame on that a second detector suspects";
+                if (output.sequence < late - 2) continue;
+                EXPECT_EQ(output.attitude, truth(output.sequence)) << "from the frame on that a second detector suspects";
             }
             EXPECT_EQ(scene.voter.level(), VoteLevel::full);
         }
@@ -157,9 +157,9 @@ TEST(Isolation, keeps_the_corrected_primary_while_the_others_have_yet_to_correct
             scene.at(Scene::time_of(sequence), rolling_back ? moved(sample, 3e-3) : sample);
         }
     }
-    for (const Output& output : scene.outputs) {
-        if (output.attitude.sequence < 52) continue;
-        EXPECT_EQ(output.attitude.attitude, truth(output.attitude.sequence)) << "frame " << output.attitude.sequence;
+    for (const VotedAttitude& output : scene.outputs) {
+        if (output.sequence < 52) continue;
+        EXPECT_EQ(output.attitude, truth(output.sequence)) << "frame " << output.sequence;
     }
     EXPECT_EQ(changes(scene), 0U);
     EXPECT_EQ(scene.last().excluded_mask, 0U);
@@ -209,9 +209,9 @@ TEST(Isolation, of_a_majority_that_is_late_is_waited_for_in_place_of_the_lane_th
         // The others speak of this frame two intervals late.
         for (std::size_t lane = 0; lane < 2; ++lane) scene.at(Scene::time_of(sequence) + ms / 10, fault.sample(lane, sequence - 2));
     }
-    for (const Output& output : scene.outputs) {
-        if (output.attitude.sequence < 52) continue;
-        EXPECT_LT(angle_between(output.attitude.attitude, truth(output.attitude.sequence)), 1e-9) << "frame " << output.attitude.sequence;
+    for (const VotedAttitude& output : scene.outputs) {
+        if (output.sequence < 52) continue;
+        EXPECT_LT(angle_between(output.attitude, truth(output.sequence)), 1e-9) << "frame " << output.sequence;
     }
     EXPECT_GE(scene.last().sequence, 197U);
 }
@@ -239,10 +239,10 @@ TEST(Isolation, that_verdicts_tell_before_the_frames_arrive_leaves_no_frame_out)
             for (std::size_t lane = 0; lane < 3; ++lane) scene.at(Scene::time_of(sequence) + 2 * ms, made.sample(lane, sequence - 1));
         }
         ASSERT_EQ(scene.outputs.size(), 99U) << "applied from frame " << applied << " on";
-        for (const Output& output : scene.outputs) {
-            const std::uint64_t sequence = output.attitude.sequence;
+        for (const VotedAttitude& output : scene.outputs) {
+            const std::uint64_t sequence = output.sequence;
             const double allowed_rad = sequence < 50 || sequence >= applied ? 0 : made.drift_rad * static_cast<double>(sequence - 49);
-            EXPECT_LE(angle_between(output.attitude.attitude, truth(sequence)), allowed_rad + 1e-9) << "frame " << sequence;
+            EXPECT_LE(angle_between(output.attitude, truth(sequence)), allowed_rad + 1e-9) << "frame " << sequence;
         }
     }
 }

@@ -1,10 +1,10 @@
 #include "scene.hpp"
 
-#include "quorient/voting/bounded_queue.hpp"
-#include "quorient/voting/continuity.hpp"
-#include "quorient/voting/levels.hpp"
-#include "quorient/voting/newcomers.hpp"
-#include "quorient/voting/timeline.hpp"
+#include "bounded_queue.hpp"
+#include "continuity.hpp"
+#include "levels.hpp"
+#include "newcomers.hpp"
+#include "timeline.hpp"
 
 #include <gtest/gtest.h>
 

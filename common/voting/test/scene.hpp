@@ -3,12 +3,15 @@
 #include "quorient/messages/codes.hpp"
 #include "quorient/messages/exclusions.hpp"
 #include "quorient/messages/meaning.hpp"
-#include "quorient/voting/agreement.hpp"
+#include "agreement.hpp"
 #include "quorient/voting/voter.hpp"
+#include "state_diagram.hpp"
 
+#include <gtest/gtest.h>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -76,6 +79,14 @@ inline AttitudeState isolating(AttitudeState sample, AxisMask axes)
     return sample;
 }
 
+/// An axis that the lane's detector leaves out from this frame on, until it is confirmed or agrees again.
+inline AttitudeState leaving_out(AttitudeState sample, AxisMask axes, std::uint64_t from)
+{
+    sample.excluded_from.exclude(axes, from);
+    sample.used_mask &= ~axes;
+    return sample;
+}
+
 inline FaultVerdict verdict_of(std::size_t lane, std::uint64_t sequence, VerdictState state = VerdictState::healthy, AxisMask axes = 0)
 {
     FaultVerdict verdict;
@@ -87,8 +98,40 @@ inline FaultVerdict verdict_of(std::size_t lane, std::uint64_t sequence, Verdict
     verdict.detectable_remaining = 2;
     if (state == VerdictState::suspect) verdict.suspect_mask = axes;
     if (state == VerdictState::isolated) verdict.isolated_mask = axes;
+    if (state == VerdictState::isolated || state == VerdictState::provisional) verdict.excluded_from.exclude(axes, sequence);
     return verdict;
 }
+
+/// The states that a voter came through, as others see them: after each call.
+class StatesSeen {
+public:
+    using Arrow = ::quorient::test::Arrow;
+
+    /// @returns false for a change that common/voting/README.md does not draw.
+    bool see(VoterState state)
+    {
+        if (!state_ || *state_ == state) {
+            state_ = state;
+            return true;
+        }
+        const Arrow arrow{to_string(*state_), to_string(state)};
+        state_ = state;
+        arrows_.insert(arrow);
+        return drawn().contains(arrow);
+    }
+
+    const std::set<Arrow>& arrows() const { return arrows_; }
+
+    static const std::set<Arrow>& drawn()
+    {
+        static const std::set<Arrow> arrows = ::quorient::test::state_diagram(QUORIENT_SOURCE_DIR "/common/voting/README.md");
+        return arrows;
+    }
+
+private:
+    std::optional<VoterState> state_;
+    std::set<Arrow> arrows_;
+};
 
 /// A voter, a clock, and everything that came out.
 class Scene {
@@ -161,9 +204,11 @@ public:
 
     void collect()
     {
+        if (const char* broken = voter.broken_invariant()) ADD_FAILURE() << broken << ", at " << now << " ns";
+        EXPECT_TRUE(states.see(voter.state())) << "a change to " << to_string(voter.state()) << " that is not drawn";
         VotedAttitude written;
         while (voter.next_owned(written)) owned.push_back(written);
-        Output output;
+        VotedAttitude output;
         while (voter.next_output(output)) {
             outputs.push_back(output);
             published_ns.push_back(now);
@@ -172,7 +217,7 @@ public:
         while (voter.next_event(event)) events.push_back(event);
     }
 
-    const VotedAttitude& last() const { return outputs.back().attitude; }
+    const VotedAttitude& last() const { return outputs.back(); }
 
     std::size_t count(EventCode code) const
     {
@@ -188,7 +233,8 @@ public:
     std::size_t lanes;
     Voter voter;
     std::int64_t now;
-    std::vector<Output> outputs;
+    StatesSeen states;
+    std::vector<VotedAttitude> outputs;
     std::vector<VotedAttitude> owned;  ///< written to `voted`
     std::vector<std::int64_t> published_ns;
     std::vector<VoterEvent> events;

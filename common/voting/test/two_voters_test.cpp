@@ -1,4 +1,5 @@
-#include "quorient/voting/voter_ranking.hpp"
+#include "other_voters.hpp"
+#include "owned_stream.hpp"
 #include "scene.hpp"
 
 #include <gtest/gtest.h>
@@ -26,9 +27,9 @@ struct Pair {
         for (; weak_alive && weak_told < weak.outputs.size(); ++weak_told) tell(strong, strong_alive, weak.outputs[weak_told]);
     }
 
-    void tell(Scene& scene, bool alive, const Output& output) const
+    void tell(Scene& scene, bool alive, const VotedAttitude& output) const
     {
-        if (alive) scene.at(std::max(weak.now, strong.now), output.attitude);
+        if (alive) scene.at(std::max(weak.now, strong.now), output);
     }
 
     template <class Change>
@@ -57,10 +58,21 @@ struct Pair {
 
 const VotedAttitude* output_of(const Scene& scene, std::uint64_t sequence)
 {
-    for (const Output& output : scene.outputs) {
-        if (output.attitude.sequence == sequence) return &output.attitude;
+    for (const VotedAttitude& output : scene.outputs) {
+        if (output.sequence == sequence) return &output;
     }
     return nullptr;
+}
+
+VotedAttitude output_by(std::uint32_t voter, std::uint64_t sequence, std::uint64_t output_sequence)
+{
+    VotedAttitude output;
+    output.epoch = first_epoch;
+    output.sequence = sequence;
+    output.output_sequence = output_sequence;
+    output.unit = 7;
+    output.voter = voter;
+    return output;
 }
 
 auto lanes_apart = [](std::size_t lane, AttitudeState& sample) {
@@ -121,14 +133,14 @@ TEST(TwoVoters, that_coast_and_wake_a_little_late_do_not_start_over)
     pair.strong.until(Scene::time_of(99) + 300 * ms);
     ASSERT_EQ(pair.strong.last().vouching_mask, 0U) << "it repeats its last attitude";
     for (int wake = 0; wake < 20; ++wake) pair.strong.stopped_until(pair.strong.voter.next_deadline_ns() + 4 * ms);
-    EXPECT_EQ(pair.strong.voter.counters().resynchronised, 0U);
+    EXPECT_EQ(pair.strong.voter.counters().absences, 0U);
 }
 
 TEST(TwoVoters, lose_no_frame_at_a_cold_start)
 {
     Pair pair;
     pair.frames(0, 99);
-    EXPECT_EQ(pair.strong.outputs.front().attitude.sequence, 0U);
+    EXPECT_EQ(pair.strong.outputs.front().sequence, 0U);
 }
 
 TEST(TwoVoters, follow_the_stronger_ones_choice_of_primary)
@@ -204,41 +216,32 @@ TEST(TwoVoters, write_voted_only_after_twenty_good_frames)
 
 TEST(TwoVoters, let_a_starting_one_catch_up_with_the_other_before_it_writes)
 {
-    VoterRanking ranking(settings_of(3, {1, 2}, 1));
-    VotedAttitude other;
-    other.epoch = first_epoch;
-    other.unit = 7;
-    other.voter = 2;
-    other.attitude = other.reset_rotation = {1, 0, 0, 0};
-    const auto may_write = [&](std::uint64_t own, std::uint64_t others) {
-        other.sequence = others;
-        other.output_sequence = others + 1;
-        ranking.on_output(other, 0);
-        return ranking.may_write({{first_epoch, own}, own + 1}, false);
+    const VoterSettings settings = settings_of(3, {1, 2}, 1);
+    const Durations durations(settings);
+    OtherVoters others(settings, durations);
+    OwnedStream stream(settings, durations);
+    const auto writes = [&](std::uint64_t own, std::uint64_t theirs) {
+        others.on_output(output_by(2, theirs, theirs + 1), 0);
+        stream.push(output_by(1, own, own + 1), false, 0);
+        stream.release(others, 0);
+        VotedAttitude written;
+        return stream.next(written);
     };
     std::uint64_t sequence = 300;
-    for (; sequence < 400; ++sequence) EXPECT_FALSE(may_write(sequence, sequence + 10)) << sequence;
-    EXPECT_TRUE(may_write(sequence + 11, sequence + 10));
+    for (; sequence < 400; ++sequence) EXPECT_FALSE(writes(sequence, sequence + 10)) << sequence;
+    EXPECT_TRUE(writes(sequence + 11, sequence + 10));
 }
 
 /// A voter that is behind, or repeats an old frame, numbers it beside what the other gave it.
 TEST(TwoVoters, number_an_older_frame_as_the_other_did)
 {
-    VoterRanking ranking(settings_of(3, {1, 2}, 1));
-    VotedAttitude other;
-    other.epoch = first_epoch;
-    other.unit = 7;
-    other.voter = 2;
-    other.attitude = other.reset_rotation = {1, 0, 0, 0};
-    for (std::uint64_t sequence = 300; sequence < 340; ++sequence) {
-        other.sequence = sequence;
-        other.output_sequence = sequence + 7;
-        ASSERT_TRUE(ranking.on_output(other, 0));
-    }
-    EXPECT_EQ(ranking.next_output_sequence({first_epoch, 340}), 347U);
-    EXPECT_EQ(ranking.next_output_sequence({first_epoch, 339}), 346U);
-    EXPECT_EQ(ranking.next_output_sequence({first_epoch, 330}), 337U);
-    EXPECT_EQ(ranking.next_output_sequence({first_epoch, 305}), 312U) << "no longer remembered: counted back";
+    const VoterSettings settings = settings_of(3, {1, 2}, 1);
+    OtherVoters others(settings, Durations(settings));
+    for (std::uint64_t sequence = 300; sequence < 400; ++sequence) ASSERT_TRUE(others.on_output(output_by(2, sequence, sequence + 7), 0));
+    EXPECT_EQ(others.next_output_sequence({first_epoch, 400}, 0), 407U);
+    EXPECT_EQ(others.next_output_sequence({first_epoch, 399}, 0), 406U);
+    EXPECT_EQ(others.next_output_sequence({first_epoch, 390}, 0), 397U);
+    EXPECT_EQ(others.next_output_sequence({first_epoch, 305}, 0), 312U) << "no longer remembered: counted back";
 }
 
 /// A reader that has not found the stronger writer yet, or has just lost it, reads the weaker one.
@@ -273,7 +276,7 @@ TEST(TwoVoters, let_a_restarted_voter_continue_what_the_other_did)
     pair.strong_told = 0;
     pair.strong_alive = true;
     pair.frames(100, 299, [](std::size_t lane, AttitudeState& sample) { return lanes_apart(lane, sample) && lane != 0; });
-    const VotedAttitude& first = pair.strong.outputs.front().attitude;
+    const VotedAttitude& first = pair.strong.outputs.front();
     const VotedAttitude* other = output_of(pair.weak, first.sequence);
     ASSERT_NE(other, nullptr);
     EXPECT_EQ(first.output_sequence, other->output_sequence);
@@ -304,9 +307,9 @@ TEST(TwoVoters, let_one_that_starts_in_the_middle_of_a_stream_wait_for_the_other
         scene.frames(sequence, sequence);
     }
     ASSERT_FALSE(scene.outputs.empty());
-    for (const Output& output : scene.outputs) EXPECT_EQ(output.attitude.output_sequence, output.attitude.sequence + 55);
-    EXPECT_LE(scene.outputs.front().attitude.sequence, 412U) << "one lease after it was heard first";
-    EXPECT_EQ(scene.outputs.back().attitude.primary_lane, 2U);
+    for (const VotedAttitude& output : scene.outputs) EXPECT_EQ(output.output_sequence, output.sequence + 55);
+    EXPECT_LE(scene.outputs.front().sequence, 412U) << "one lease after it was heard first";
+    EXPECT_EQ(scene.outputs.back().primary_lane, 2U);
 }
 
 TEST(TwoVoters, let_one_that_hears_no_other_go_on_alone_above_what_the_other_may_have_had)
@@ -314,8 +317,8 @@ TEST(TwoVoters, let_one_that_hears_no_other_go_on_alone_above_what_the_other_may
     Scene scene(settings_of(3, {1, 2}, 1), Scene::time_of(300) - 3 * ms);
     scene.frames(300, 800);
     ASSERT_FALSE(scene.outputs.empty());
-    EXPECT_NEAR(static_cast<double>(scene.outputs.front().attitude.sequence), 706, 6) << "after 2 s";
-    EXPECT_EQ(scene.outputs.front().attitude.output_sequence, scene.outputs.front().attitude.sequence + 1);
+    EXPECT_NEAR(static_cast<double>(scene.outputs.front().sequence), 706, 6) << "after 2 s";
+    EXPECT_EQ(scene.outputs.front().output_sequence, scene.outputs.front().sequence + 1);
 }
 
 TEST(TwoVoters, let_one_that_was_there_from_the_beginning_start_at_once)
@@ -323,7 +326,7 @@ TEST(TwoVoters, let_one_that_was_there_from_the_beginning_start_at_once)
     Scene scene(settings_of(3, {1, 2}, 1), -100 * ms);
     scene.frames(0, 10);
     ASSERT_EQ(scene.outputs.size(), 11U);
-    EXPECT_EQ(scene.outputs.front().attitude.output_sequence, 1U);
+    EXPECT_EQ(scene.outputs.front().output_sequence, 1U);
 }
 
 TEST(TwoVoters, never_let_a_stopped_one_take_the_output_back_in_time)
@@ -341,19 +344,19 @@ TEST(TwoVoters, never_let_a_stopped_one_take_the_output_back_in_time)
         for (std::size_t lane = 0; lane < 3; ++lane) pair.strong.at(wakes, sample_of(lane, sequence));
     }
     for (std::size_t output = told; output < pair.weak.outputs.size(); ++output) {
-        if (output + 64 >= pair.weak.outputs.size()) pair.strong.at(wakes, pair.weak.outputs[output].attitude);
+        if (output + 64 >= pair.weak.outputs.size()) pair.strong.at(wakes, pair.weak.outputs[output]);
     }
     pair.weak_told = pair.weak.outputs.size();
     pair.strong_alive = true;
     pair.frames(500, 599);
     ASSERT_GT(pair.strong.outputs.size(), before);
-    EXPECT_EQ(pair.strong.voter.counters().resynchronised, 1U);
+    EXPECT_EQ(pair.strong.voter.counters().absences, 1U);
     for (std::size_t output = before; output < pair.strong.outputs.size(); ++output) {
-        EXPECT_GE(pair.strong.outputs[output].attitude.sequence, 500U);
-        EXPECT_GT(pair.strong.outputs[output].attitude.output_sequence, 500U);
+        EXPECT_GE(pair.strong.outputs[output].sequence, 500U);
+        EXPECT_GT(pair.strong.outputs[output].output_sequence, 500U);
     }
     ASSERT_GT(pair.strong.owned.size(), owned_before);
-    EXPECT_GE(pair.strong.owned[owned_before].sequence, pair.strong.outputs[before].attitude.sequence + 20) << "twenty good frames first";
+    EXPECT_GE(pair.strong.owned[owned_before].sequence, pair.strong.outputs[before].sequence + 20) << "twenty good frames first";
     EXPECT_EQ(pair.strong.owned.back().sequence, 599U);
 }
 
@@ -369,6 +372,20 @@ TEST(TwoVoters, give_up_the_ownership_while_only_the_stronger_one_is_cut_off)
     EXPECT_FALSE(pair.strong.voter.may_own());
     EXPECT_EQ(pair.strong.owned.back().sequence, 99U);
     EXPECT_TRUE(pair.weak.voter.may_own());
+}
+
+TEST(TwoVoters, listen_when_they_are_delayed_while_cut_off)
+{
+    Pair pair;
+    pair.frames(0, 99);
+    for (std::uint64_t sequence = 100; sequence < 150; ++sequence) {
+        for (std::size_t lane = 0; lane < 3; ++lane) pair.deliver(pair.weak, sample_of(lane, sequence), Scene::time_of(sequence));
+        pair.strong.until(Scene::time_of(sequence));
+    }
+    ASSERT_EQ(pair.strong.voter.state(), VoterState::cut_off);
+    pair.strong.stopped_until(Scene::time_of(149) + 200 * ms);
+    EXPECT_EQ(pair.strong.voter.state(), VoterState::listening);
+    EXPECT_TRUE(pair.strong.states.arrows().contains({"cut_off", "listening"}));
 }
 
 TEST(TwoVoters, ignore_strangers_and_their_own_samples)

@@ -24,10 +24,10 @@ auto only(std::size_t present)
 void expect_every_frame_once(const Scene& scene, std::uint64_t first, std::uint64_t last)
 {
     std::uint64_t expected = first;
-    for (const Output& output : scene.outputs) {
-        if (mode_of(output.attitude) == AttitudeMode::coasting) continue;
-        EXPECT_EQ(output.attitude.sequence, expected);
-        expected = output.attitude.sequence + 1;
+    for (const VotedAttitude& output : scene.outputs) {
+        if (mode_of(output) == AttitudeMode::coasting) continue;
+        EXPECT_EQ(output.sequence, expected);
+        expected = output.sequence + 1;
     }
     EXPECT_EQ(expected, last + 1);
 }
@@ -42,9 +42,9 @@ TEST(Voter, publishes_the_primarys_attitude_and_never_an_average)
         return true;
     });
     expect_every_frame_once(scene, 0, 49);
-    for (const Output& output : scene.outputs) {
-        EXPECT_EQ(output.attitude.attitude, truth(output.attitude.sequence));
-        EXPECT_EQ(output.attitude.primary_lane, 1U);
+    for (const VotedAttitude& output : scene.outputs) {
+        EXPECT_EQ(output.attitude, truth(output.sequence));
+        EXPECT_EQ(output.primary_lane, 1U);
     }
     EXPECT_NEAR(scene.last().spread_rad, 2e-5, 1e-9) << "of the two lanes heard when it went out";
 }
@@ -205,7 +205,7 @@ TEST(Voter, leaves_a_contradicted_primary_within_the_same_frame)
         if (lane == 0) sample = moved(sample, 0.5);
         return true;
     });
-    for (const Output& output : scene.outputs) EXPECT_EQ(output.attitude.attitude, truth(output.attitude.sequence));
+    for (const VotedAttitude& output : scene.outputs) EXPECT_EQ(output.attitude, truth(output.sequence));
     expect_every_frame_once(scene, 0, 69);
     EXPECT_EQ(scene.why(0), LaneExclusion::disagrees);
     EXPECT_EQ(scene.voter.counters().primary_changes, 1U);
@@ -236,7 +236,7 @@ TEST(Voter, never_publishes_what_is_not_an_attitude)
         if (sample.sequence % 3 == 2) sample.angle_sigma_rad = std::numeric_limits<double>::infinity();
         return true;
     });
-    for (const Output& output : scene.outputs) EXPECT_EQ(output.attitude.attitude, truth(output.attitude.sequence));
+    for (const VotedAttitude& output : scene.outputs) EXPECT_EQ(output.attitude, truth(output.sequence));
     EXPECT_EQ(scene.why(0), LaneExclusion::invalid);
     EXPECT_EQ(scene.voter.counters().rejected, 50U);
 }
@@ -344,8 +344,8 @@ TEST(Voter, coasts_at_20_hz_with_growing_doubt_and_then_is_lost)
     const std::size_t coasted = scene.outputs.size() - before;
     EXPECT_NEAR(static_cast<double>(coasted), 20 * (2.0 - 0.025), 1);
     for (std::size_t output = before; output < scene.outputs.size(); ++output) {
-        const VotedAttitude& now = scene.outputs[output].attitude;
-        const VotedAttitude& previous = scene.outputs[output - 1].attitude;
+        const VotedAttitude& now = scene.outputs[output];
+        const VotedAttitude& previous = scene.outputs[output - 1];
         const bool lost = scene.published_ns[output] >= Scene::time_of(49) + 1025 * ms;
         EXPECT_EQ(now.attitude, truth(49));
         EXPECT_EQ(now.sequence, 49U);
@@ -460,7 +460,7 @@ TEST(Voter, is_not_hurried_by_a_lane_that_runs_ahead_of_time)
             scene.at(Scene::time_of(sequence) + static_cast<std::int64_t>(lane) * ms, sample_of(lane, sequence));
         scene.at(Scene::time_of(sequence) + 3 * ms, moved(sample_of(0, sequence + 5), 0.5));
     }
-    for (const Output& output : scene.outputs) EXPECT_EQ(output.attitude.attitude, truth(output.attitude.sequence));
+    for (const VotedAttitude& output : scene.outputs) EXPECT_EQ(output.attitude, truth(output.sequence));
     EXPECT_EQ(scene.last().sequence, 99U);
 }
 
@@ -509,7 +509,7 @@ TEST(Voter, never_speaks_of_its_primary_as_excluded)
     for (std::uint64_t dead = 0; dead < 6; ++dead) {
         scene.frames(50 + 50 * dead, 99 + 50 * dead, all_but(dead % 3));
     }
-    for (const Output& output : scene.outputs) EXPECT_EQ(output.attitude.excluded_mask >> (output.attitude.primary_lane - 1) & 1U, 0U);
+    for (const VotedAttitude& output : scene.outputs) EXPECT_EQ(output.excluded_mask >> (output.primary_lane - 1) & 1U, 0U);
 }
 
 TEST(Voter, warns_of_a_primary_that_changes_too_often)
@@ -561,7 +561,7 @@ TEST(Voter, allocates_nothing_after_its_construction)
 {
     Voter voter(settings_of(3));
     std::int64_t now = 0;
-    Output output;
+    VotedAttitude output;
     VoterEvent event;
     voter.poll(now);
     const std::size_t before = quorient::test::allocation_count();

@@ -3,7 +3,7 @@
 #include "quorient/messages/attitude_state.hpp"
 #include "quorient/messages/codes.hpp"
 #include "quorient/messages/identity.hpp"
-#include "quorient/voting/timeline.hpp"
+#include "timeline.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -14,7 +14,7 @@ namespace quorient::voting {
 /// One lane: its latest samples and how it stands.
 ///
 /// Two kinds of exclusion. *Latched* (silent, disagrees, invalid): ends after `return_frames` frames in which the lane agreed with the
-/// primary. *For the moment* (initialising, untrusted, uncorroborated, outvoted): told from the newest sample, ends with its cause.
+/// primary. *For the moment* (initialising, untrusted, uncorroborated, outvoted): seen from the newest sample, ends with its cause.
 class LaneTracker {
 public:
     LaneTracker() : sample_(frame_window) {}

@@ -11,10 +11,11 @@
 
 namespace quorient::voting {
 
-/// What the lanes' detectors say: which axes a majority of them reports, and whether suspicion is in the air.
+/// What the lanes' detectors report: which axes a majority of them names, and whether there is a suspicion.
 ///
-/// A detector reports an axis that it calls SUSPECT, ISOLATED or candidate in its newest verdict, or that its lane's attitude leaves
-/// out. What it isolated stays reported while it is silent (a dead detector re-admits nobody); mere suspicion is dropped then.
+/// A detector reports an axis that its newest verdict calls SUSPECT, ISOLATED or a candidate, or that it or its lane's attitude leaves out,
+/// for good or provisionally. What it isolated stays reported while it is silent, since a dead detector readmits nothing. The rest is
+/// dropped then.
 class Corroboration {
 public:
     Corroboration(std::size_t lanes, std::size_t majority, unsigned settle_frames, unsigned reopen_frames, std::int64_t silence_ns)
@@ -40,8 +41,8 @@ public:
     bool speaks(std::size_t lane, std::int64_t now_ns) const;
     bool has_judged(std::size_t lane, Identity identity) const { return voice_[lane].identity >= identity; }
 
-    /// The lane leaves out axes that a majority reports and that `isolated` lacks, or its detector has just told it to.
-    bool knows_better(std::size_t lane, AxisMask isolated, std::int64_t now_ns) const;
+    /// The lane, or its detector, has isolated axes that a majority reports and that `left_out` lacks.
+    bool knows_better(std::size_t lane, AxisMask left_out, std::int64_t now_ns) const;
 
     /// What the lane's detector has isolated or the lane itself leaves out for good.
     AxisMask held_out(std::size_t lane) const { return voice_[lane].isolated | voice_[lane].applied; }
@@ -55,9 +56,10 @@ private:
         std::int64_t heard_ns = 0;
         std::uint64_t opened_at = 0;  ///< frame at which this lane alone last opened the settle time
         AxisMask isolated = 0;        ///< by the verdict
-        AxisMask suspected = 0;
-        AxisMask applied = 0;  ///< by the lane's attitude
-        AxisMask doubted = 0;
+        AxisMask suspected = 0;       ///< by the verdict, or candidates
+        AxisMask provisional = 0;     ///< left out by the verdict and not isolated
+        AxisMask applied = 0;         ///< isolated by the lane's attitude
+        AxisMask doubted = 0;         ///< suspected by the lane's attitude, or left out and not isolated
         bool heard = false;
         bool troubled = false;
         bool exhausted = false;

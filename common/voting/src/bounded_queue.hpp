@@ -39,6 +39,11 @@ public:
         return true;
     }
 
+    std::size_t size() const { return size_; }
+
+    /// @param index  0 = the oldest
+    const T& operator[](std::size_t index) const { return entry_[(first_ + index) % Capacity]; }
+
     std::size_t dropped() const { return dropped_; }
 
 private:

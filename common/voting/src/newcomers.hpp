@@ -11,7 +11,7 @@
 
 namespace quorient::voting {
 
-/// Samples of frames that nobody expected: another epoch, or a sequence far ahead. They wait here until it is clear whether
+/// Samples of frames that were not expected: another epoch, or a sequence far ahead. They wait here until it is clear whether
 /// the publisher moved on (a majority of lanes says so, or no other lane says otherwise for the grace time) or one lane strays.
 class Newcomers {
 public:

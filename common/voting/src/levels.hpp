@@ -9,7 +9,7 @@
 
 namespace quorient::voting {
 
-/// How many lanes stand behind the output, told from the last `window` frames before the newest one: votes of the newest
+/// How many lanes stand behind the output, counted over the last `window` frames before the newest one: votes of the newest
 /// may still be on their way.
 ///
 /// A lane stands behind the output once it vouched for 8 of 10 frames, and no longer when it vouched for half of them or fewer.
@@ -28,7 +28,7 @@ public:
 
     LaneMask standing() const { return standing_; }
 
-    /// @param excluded lanes that do not count now; @param redundancy_left false: the detectors could tell no further fault.
+    /// @param excluded lanes that do not count now; @param redundancy_left false: the detectors could name no further fault.
     VoteLevel level(LaneMask excluded, bool redundancy_left) const;
 
 private:

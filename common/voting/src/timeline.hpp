@@ -19,10 +19,10 @@ inline constexpr std::uint64_t frame_window = 64;
 class Timeline {
 public:
     enum class Arrival {
-        fresh,  ///< of a frame that is still to be published
-        late,   ///< of a frame that was passed a short while ago
+        fresh,  ///< its frame is still to be published
+        late,   ///< its frame was passed a short while ago
         old,    ///< before everything remembered
-        ahead,  ///< of an epoch or a sequence that is not to be expected now
+        ahead,  ///< its epoch or sequence is not to be expected now
     };
 
     explicit Timeline(std::int64_t interval_ns) : interval_ns_(interval_ns) {}

@@ -22,7 +22,7 @@ using Quaternion = rotation::Wxyz;
 /// Everything a voter computes with is finite and in range.
 bool is_sound(const AttitudeState& sample);
 
-/// Which pairs of lanes agree: their attitudes of one frame differ by at most
+/// Which pairs of lanes agree: neither uses an axis that the other one has isolated, and their attitudes of one frame differ by at most
 ///     agreement_rad + agreement_sigmas * sqrt(sigma_a^2 + sigma_b^2),
 /// and by at most half of that once they were apart (hysteresis).
 ///
@@ -33,7 +33,8 @@ public:
 
     bool agree(std::size_t a, const AttitudeState& of_a, std::size_t b, const AttitudeState& of_b, double sigma_limit) const;
 
-    /// Remembers for the hysteresis how the pair stands now.
+    /// Remembers for the hysteresis how the pair stands now. Lanes that leave out different axes are not compared: the difference may be
+    /// the fault that only one of them has found.
     void remember(std::size_t a, const AttitudeState& of_a, std::size_t b, const AttitudeState& of_b, double sigma_limit);
 
     /// The pairs of this lane start afresh.

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "agreement.hpp"
 #include "quorient/messages/attitude_state.hpp"
 #include "quorient/messages/identity.hpp"
 #include "quorient/messages/voted_attitude.hpp"
-#include "quorient/voting/agreement.hpp"
 
 #include <cstdint>
 
