@@ -93,6 +93,7 @@ int main(int argc, char** argv)
     add_methods("4", "cone-4");
     add_methods("6", "dodecahedron");
     add_methods("8", "octahedron-8");
+    add_methods("9", "triads-3");
     add_methods("24", "triads-8");
     benchmark::Initialize(&argc, argv);
     benchmark::RunSpecifiedBenchmarks();

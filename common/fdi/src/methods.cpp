@@ -1,6 +1,7 @@
 #include "quorient/fdi/methods.hpp"
 
 #include "arrays/accumulating_detector.hpp"
+#include "quorient/fdi/field_detector.hpp"
 #include "four_axes/extrapolation_detector.hpp"
 #include "single_frame/guaranteed_detector.hpp"
 #include "single_frame/invariants_detector.hpp"
@@ -29,7 +30,7 @@ Made made(const DetectorSettings& settings, const geometry::SensorCluster& clust
 }
 
 /// With fewer instruments it could detect and not isolate; two faults at once and their margin are subset's.
-bool asks_for_accumulating(const DetectorSettings& settings, const geometry::SensorCluster& cluster)
+bool asks_for_field(const DetectorSettings& settings, const geometry::SensorCluster& cluster)
 {
     constexpr std::size_t least_instruments = 3;
     return cluster.instrument_name.size() >= least_instruments && settings.max_faults.value_or(1) == 1 && !settings.margin;
@@ -39,8 +40,8 @@ Made make_automatic(const DetectorSettings& asked, const geometry::SensorCluster
 {
     DetectorSettings settings = asked;
     if (cluster.size() == FourAxisDetector::axis_count) return made<VectorDetector>(settings, cluster);
-    if (asks_for_accumulating(settings, cluster))
-        if (auto detector = made<AccumulatingDetector>(settings, cluster)) return detector;  // else these are no instruments of three directions
+    if (asks_for_field(settings, cluster))
+        if (auto detector = made<FieldDetector>(settings, cluster)) return detector;  // else these are no instruments of three directions
     if (settings.instruments) return made<SubsetDetector>(settings, cluster);
     if (!settings.margin) settings.margin = SubsetDetector::default_margin;
     return made<GltDetector>(settings, cluster);
@@ -52,7 +53,7 @@ std::span<const Method> methods()
 {
     using enum MethodInput;
     static const std::vector<Method> table{
-        {"auto", "4 to 24", "vector on four axes; accumulating on three or more triads; else subset where faults take instruments; else glt",
+        {"auto", "4 to 24", "vector on four axes; field on three or more triads; else subset where faults take instruments; else glt",
          MethodInput::rows, {}, "", make_automatic},
         {"guaranteed", "max_faults + 4 to 8", "set-membership estimation: never wrong while noise stays within its bound", row,
          {"bound", "threshold", "max-faults", "direction"},
@@ -73,6 +74,8 @@ std::span<const Method> methods()
          "predicted, triad_modulus, working_triad, z1, z2, determinant, fallback", made<ExtrapolationDetector>},
         {"vector", "4", "the triad whose body vector fits the extrapolated one", rows, {"tolerance"},
          "predicted, triad_distance, working_triad, order", made<VectorDetector>},
+        {"field", "6 to 24", "instruments that each span space, on any array: allowances by class, noise measured online", instruments,
+         {}, "", made<FieldDetector>},
         {"accumulating", "6 to 24", "instruments that each span space, compared over windows of up to 512 frames", instruments, {}, "",
          made<AccumulatingDetector>},
     };

@@ -21,13 +21,6 @@ tl::expected<void, std::string> require_noise(const geometry::SensorCluster& clu
     return {};
 }
 
-tl::expected<void, std::string> require_positive(const std::optional<double>& value, std::string_view name)
-{
-    if (value && !(std::isfinite(*value) && *value > 0))
-        return tl::unexpected(fmt::format("{} must be finite and above 0, got {}", name, *value));
-    return {};
-}
-
 }  // namespace
 
 double chi_square_quantile(unsigned dof, double tail)
@@ -62,7 +55,7 @@ tl::expected<geometry::AxisVector, std::string> bound_of_axes(const DetectorSett
 tl::expected<double, std::string> false_alarm_probability(const DetectorSettings& settings)
 {
     const double pfa = settings.pfa.value_or(default_false_alarm_probability);
-    if (!(pfa > 0 && pfa < 1)) return tl::unexpected(fmt::format("pfa must be a probability above 0 and below 1, got {}", pfa));
+    if (!settings::probability.hold(pfa)) return tl::unexpected(settings::out_of_bounds("pfa", settings::probability, "", pfa));
     return pfa;
 }
 
@@ -74,17 +67,7 @@ tl::expected<void, std::string> require_axes(const geometry::SensorCluster& clus
 
 tl::expected<void, std::string> check_figures(const DetectorSettings& settings)
 {
-    for (const auto& [value, name] :
-         {std::pair{settings.tolerance, "tolerance"}, std::pair{settings.sigma, "sigma"}, std::pair{settings.bound, "bound"},
-          std::pair{settings.threshold, "threshold"}, std::pair{settings.motion_noise, "motion_noise"}})
-        if (const auto positive = require_positive(value, name); !positive) return positive;
-    if (settings.margin && !(std::isfinite(*settings.margin) && *settings.margin >= 0))
-        return tl::unexpected(fmt::format("margin must be finite and at least 0, got {}", *settings.margin));
-    if (settings.doubt && !(*settings.doubt > 0 && *settings.doubt < 1))
-        return tl::unexpected(fmt::format("doubt must be a probability above 0 and below 1, got {}", *settings.doubt));
-    if (settings.max_faults && *settings.max_faults == 0) return tl::unexpected(std::string("max_faults must be at least 1"));
-    if (const auto pfa = false_alarm_probability(settings); !pfa) return tl::unexpected(pfa.error());
-    return {};
+    return settings::check(detector_record(), settings);
 }
 
 }  // namespace quorient::fdi

@@ -1,5 +1,6 @@
 #include "arrays/accumulating_detector.hpp"
 
+#include "quorient/fdi/field_detector.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
 #include "quorient/fdi/methods.hpp"
 #include "quorient/geometry/layouts.hpp"
@@ -295,11 +296,11 @@ TEST(Accumulating, says_how_much_is_left_to_detect)
     EXPECT_EQ(detector->detectable_remaining(), 0U) << "one whole instrument has nothing to be compared with";
 }
 
-TEST(Accumulating, is_what_auto_takes_on_three_triads_and_not_on_two_nor_for_two_faults)
+TEST(Auto, takes_the_field_detector_on_three_triads_and_not_on_two_nor_for_two_faults)
 {
     const auto taken = [](const DetectorSettings& settings, const char* layout) {
         const auto made = make_detector(settings, Array(1, layout).cluster).value();
-        return dynamic_cast<const AccumulatingDetector*>(made.get()) != nullptr;
+        return dynamic_cast<const FieldDetector*>(made.get()) != nullptr;
     };
     DetectorSettings settings;
     EXPECT_TRUE(taken(settings, "triads-3"));

@@ -1,6 +1,7 @@
 // No method may touch the heap per frame: every allocation of this program is counted.
 
 #include "allocation_count.hpp"
+#include "field_scene.hpp"
 #include "quorient/fdi/methods.hpp"
 #include "test_clusters.hpp"
 
@@ -55,6 +56,32 @@ TEST(Allocation, does_not_happen_per_frame_in_any_method)
         const auto cluster = cluster_named(tried.layout);
         const auto detector = make_detector(settings, cluster).value();
         EXPECT_EQ(allocations_while_assessing(*detector, cluster), 0U) << tried.method << " on " << tried.layout;
+    }
+}
+
+TEST(Allocation, does_not_happen_per_frame_in_the_field_detector)
+{
+    for (const Mount mount : {Mount::board, Mount::structure}) {
+        FieldScene scene(8, 1);
+        scene.spoil = [](std::uint64_t sequence, FieldScene::Rates& rates) {
+            if (sequence > 600) rates[4] += 10;
+            if (sequence > 700 && sequence < 720) rates[9] = std::nan("");
+        };
+        scene.next();
+        const auto detector = make_detector({.method = "field", .mount = mount}, scene.cluster).value();
+        Assessment assessment;
+        std::size_t named = 0;
+        const std::size_t before = quorient::test::allocation_count();
+        for (int frame = 0; frame < 800; ++frame) {
+            detector->assess(scene.next(), assessment);
+            named += assessment.outcome == Outcome::isolated ? 1 : 0;
+        }
+        detector->exclude(axes_of(1));
+        for (int frame = 0; frame < 100; ++frame) detector->assess(scene.next(), assessment);
+        detector->exclude(0);
+        for (int frame = 0; frame < 200; ++frame) detector->assess(scene.next(), assessment);
+        EXPECT_EQ(quorient::test::allocation_count() - before, 0U);
+        EXPECT_GT(named, 0U);
     }
 }
 

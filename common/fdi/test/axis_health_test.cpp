@@ -68,44 +68,74 @@ TEST_F(AxisHealthTest, finds_nothing_wrong_with_sound_axes_at_rest_and_in_motion
     EXPECT_EQ(feed(50'000, wild, sound), 0U);
 }
 
-TEST_F(AxisHealthTest, finds_a_frozen_axis_at_the_second_repeat_while_the_others_move)
+TEST_F(AxisHealthTest, finds_a_stuck_axis_at_the_fourth_repeat_while_the_others_move)
 {
     feed(500, wild, sound);
     const double stuck = z_[2];
-    EXPECT_EQ(feed(1, wild, [&](double) { return stuck; }), 0U) << "a single repeat is normal";
+    EXPECT_EQ(feed(3, wild, [&](double) { return stuck; }), 0U) << "repeats are normal";
     EXPECT_EQ(feed(1, wild, [&](double) { return stuck; }), 0b100U);
-    EXPECT_EQ(health_->fault(2), AxisFault::frozen);
+    EXPECT_EQ(health_->fault(2), AxisFault::stuck);
 }
 
-TEST_F(AxisHealthTest, forgives_single_repeats_in_motion)
+TEST_F(AxisHealthTest, finds_a_stuck_axis_where_neither_noise_nor_quantum_is_stated)
 {
-    double last = 0;
-    bool repeat = false;
-    const auto every_other = [&](double value) { return (repeat = !repeat) ? last = value : last; };
-    EXPECT_EQ(feed(5000, wild, every_other), 0U);
+    cluster_.sigma.setZero();
+    cluster_.quantum.setZero();
+    health_.emplace(cluster_);
+    EXPECT_EQ(feed(20'000, rest, sound) | feed(5000, wild, sound), 0U);
+    const double stuck = z_[2];
+    EXPECT_EQ(feed(20, wild, [&](double) { return stuck; }), 0b100U);
 }
 
-TEST_F(AxisHealthTest, finds_a_frozen_axis_at_rest_by_what_its_noise_never_does)
+TEST_F(AxisHealthTest, forgives_each_value_that_comes_three_times_in_motion)
+{
+    double held = 0;
+    unsigned frame = 0;
+    const auto every_third = [&](double value) { return frame++ % 3 == 0 ? held = value : held; };
+    EXPECT_EQ(feed(6000, wild, every_third), 0U);
+}
+
+TEST_F(AxisHealthTest, leaves_an_axis_in_peace_that_repeats_itself_at_rest)
 {
     feed(2000, rest, sound);
     const double stuck = z_[2];
-    EXPECT_EQ(feed(4, rest, [&](double) { return stuck; }), 0U);
-    EXPECT_EQ(feed(60, rest, [&](double) { return stuck; }), 0b100U);
+    EXPECT_EQ(feed(100'000, rest, [&](double) { return stuck; }), 0U) << "a coarse axis at rest repeats itself for ever";
+    EXPECT_EQ(feed(10, wild, [&](double) { return stuck; }), 0b100U) << "and is found as soon as the others move";
+}
+
+TEST_F(AxisHealthTest, leaves_a_resting_axis_in_peace_while_one_other_axis_is_wrong)
+{
+    cluster_.sigma.setConstant(quantum_rad / 10);
+    health_.emplace(cluster_);
+    feed(500, wild, sound);
+    AxisMask broken = 0;
+    for (unsigned i = 0; i < 2000; ++i) {
+        z_.assign(6, 0.0);
+        z_[5] = 1e-2 * std::sin(0.3 * i);
+        broken |= health_->assess({.identity = {1, 1000 + i}, .interval_s = interval_s, .increment = z_, .valid = 0b111111});
+    }
+    EXPECT_EQ(broken, 0U);
 }
 
 TEST_F(AxisHealthTest, tells_an_all_zero_axis)
 {
     feed(500, wild, sound);
-    EXPECT_EQ(feed(5, wild, [](double) { return 0.0; }), 0b100U);
+    EXPECT_EQ(feed(6, wild, [](double) { return 0.0; }), 0b100U);
     EXPECT_EQ(health_->fault(2), AxisFault::zero);
 }
 
-TEST_F(AxisHealthTest, tells_an_absent_axis_but_not_a_few_lost_samples)
+TEST_F(AxisHealthTest, reports_an_axis_without_data_and_never_calls_it_broken)
 {
-    EXPECT_EQ(feed(7, wild, [](double) { return std::nan(""); }), 0U);
+    const auto silent = [](double) { return std::nan(""); };
+    EXPECT_EQ(feed(7, wild, silent), 0U);
+    EXPECT_EQ(health_->absent(), 0U) << "a few lost samples";
     feed(40, wild, sound);
-    EXPECT_EQ(feed(8, wild, [](double) { return std::nan(""); }), 0b100U);
-    EXPECT_EQ(health_->fault(2), AxisFault::absent);
+    EXPECT_EQ(feed(1000, wild, silent), 0U);
+    EXPECT_EQ(health_->absent(), 0b100U);
+    feed(7, wild, sound);
+    EXPECT_EQ(health_->absent(), 0b100U);
+    feed(1, wild, sound);
+    EXPECT_EQ(health_->absent(), 0U) << "back";
 }
 
 TEST_F(AxisHealthTest, tells_a_value_beyond_the_range)
@@ -156,13 +186,6 @@ TEST_F(AxisHealthTest, forgives_the_repeats_of_an_axis_beyond_whose_range_the_bo
     EXPECT_EQ(feed(50, wild, [](double) { return 0.9 * limit_rad_s * interval_s; }), 0b100U) << "frozen elsewhere it is found";
 }
 
-TEST_F(AxisHealthTest, does_not_ask_for_noise_where_the_quantum_hides_it)
-{
-    cluster_.sigma.setConstant(quantum_rad / 10);
-    health_.emplace(cluster_);
-    EXPECT_EQ(feed(5000, wild, [](double) { return 0.0; }), 0U);
-}
-
 TEST_F(AxisHealthTest, what_is_broken_is_isolated_by_the_monitor_without_any_parity)
 {
     auto monitor = FaultMonitor::make({.method = "glt"}, {}, cluster_).value();
@@ -174,15 +197,40 @@ TEST_F(AxisHealthTest, what_is_broken_is_isolated_by_the_monitor_without_any_par
         message.sequence = frame;
         message.interval_s = interval_s;
         message.axis_count = 6;
-        message.valid_mask = frame < 300 ? 0b111111 : 0b111011;
+        message.valid_mask = 0b111111;
         const geometry::AxisVector z = cluster_.axes * wild(frame) * interval_s;
         for (std::size_t axis = 0; axis < 6; ++axis) message.increment[axis] = z(static_cast<Eigen::Index>(axis)) + noise_(random_);
+        if (frame >= 300) message.increment[2] = range_rad_s * interval_s;
         isolated = monitor.assess(message).isolated_mask;
         if (isolated != 0) isolated_at = std::min<std::uint64_t>(isolated_at, frame);
     }
     EXPECT_EQ(isolated, 0b100U);
     EXPECT_GE(isolated_at, 300U);
     EXPECT_LE(isolated_at, 310U);
+}
+
+TEST_F(AxisHealthTest, what_sends_nothing_is_never_isolated_and_returns_with_its_data)
+{
+    auto monitor = FaultMonitor::make({.method = "glt"}, {}, cluster_).value();
+    for (unsigned frame = 0; frame < 900; ++frame) {
+        SensorFrame message;
+        message.epoch = 1;
+        message.sequence = frame;
+        message.interval_s = interval_s;
+        message.axis_count = 6;
+        const bool silent = frame >= 300 && frame < 600;
+        message.valid_mask = silent ? 0b110011 : 0b111111;
+        const geometry::AxisVector z = cluster_.axes * wild(frame) * interval_s;
+        for (std::size_t axis = 0; axis < 6; ++axis) message.increment[axis] = z(static_cast<Eigen::Index>(axis)) + noise_(random_);
+        ASSERT_EQ(monitor.assess(message).isolated_mask, 0U) << frame;
+        const bool told = frame >= 320 && frame < 600;
+        if (told) {
+            ASSERT_EQ(monitor.diagnosis().absent_mask, 0b001100U) << frame;
+        }
+        if (frame >= 620) {
+            ASSERT_EQ(monitor.diagnosis().absent_mask, 0U) << frame;
+        }
+    }
 }
 
 }  // namespace

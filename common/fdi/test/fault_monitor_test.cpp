@@ -188,7 +188,7 @@ TEST(FaultMonitor, says_why_a_method_or_a_setting_cannot_serve)
     EXPECT_THAT(unknown.error(), ::testing::HasSubstr("gtl"));
     const auto settings = FaultMonitor::make({.method = "glt"}, {.confirm_required = 9}, cone_6());
     ASSERT_FALSE(settings);
-    EXPECT_THAT(settings.error(), ::testing::HasSubstr("confirmation"));
+    EXPECT_THAT(settings.error(), ::testing::HasSubstr("confirm_required"));
 }
 
 }  // namespace

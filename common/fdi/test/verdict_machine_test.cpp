@@ -242,10 +242,73 @@ TEST_F(VerdictMachineTest, isolates_a_second_fault_beside_the_first)
     EXPECT_EQ(machine_.verdict().excluded_from[2], second - settings_.onset_guard_frames);
 }
 
+Assessment contradicting(AxisMask axes, std::uint64_t from)
+{
+    Assessment assessment{.outcome = Outcome::suspect, .isolated = axes};
+    assessment.provisional = axes;
+    assessment.provisional_from = from;
+    return assessment;
+}
+
+TEST_F(VerdictMachineTest, leaves_a_contradicted_axis_out_at_once_and_takes_it_back_when_the_contradiction_ends)
+{
+    const std::uint64_t from = next_ - 4;
+    feed(contradicting(axis_1, from));
+    EXPECT_EQ(state(), VerdictState::provisional);
+    EXPECT_EQ(machine_.verdict().isolated_mask, 0U);
+    EXPECT_EQ(provisional_mask(machine_.verdict()), axis_1);
+    EXPECT_EQ(machine_.verdict().excluded_from[1], from - settings_.onset_guard_frames);
+    EXPECT_EQ(machine_.verdict().working_mask, 0b111101U);
+    EXPECT_EQ(feed(contradicting(axis_1, from + 2), 100).excluded_from[1], from - settings_.onset_guard_frames) << "from where it began";
+
+    feed(healthy());
+    EXPECT_EQ(provisional_mask(machine_.verdict()), 0U);
+    EXPECT_EQ(machine_.verdict().working_mask, 0b111111U);
+    feed(healthy(), 2);
+    EXPECT_EQ(state(), VerdictState::healthy);
+}
+
+TEST_F(VerdictMachineTest, latches_what_was_left_out_from_where_it_was_left_out)
+{
+    const std::uint64_t from = next_ - 4;
+    feed(contradicting(axis_1, from), 30);
+    Assessment named = naming(axis_1);
+    named.onset = next_ - 8;
+    named.provisional = axis_1;  // until it is excluded
+    feed(named, 2);
+    EXPECT_EQ(machine_.verdict().isolated_mask, axis_1);
+    EXPECT_EQ(machine_.verdict().excluded_from[1], from - settings_.onset_guard_frames);
+}
+
+TEST_F(VerdictMachineTest, forgets_what_was_left_out_provisionally_in_a_new_epoch)
+{
+    feed(contradicting(axis_1, next_ - 1));
+    machine_.update({2, 0}, healthy());
+    EXPECT_EQ(machine_.verdict().excluded_from.mask(), 0U);
+}
+
+TEST_F(VerdictMachineTest, keeps_three_axes_whatever_is_contradicted)
+{
+    feed(contradicting(0b001111, next_ - 1), 5);
+    EXPECT_EQ(provisional_mask(machine_.verdict()), 0U);
+    EXPECT_EQ(state(), VerdictState::suspect);
+}
+
+TEST_F(VerdictMachineTest, says_saturated_while_all_are_and_blames_nobody)
+{
+    Assessment beyond = healthy();
+    beyond.saturated = true;
+    feed(beyond, 50);
+    EXPECT_EQ(state(), VerdictState::saturated);
+    EXPECT_EQ(machine_.verdict().isolated_mask | machine_.verdict().suspect_mask, 0U);
+    feed(healthy());
+    EXPECT_EQ(state(), VerdictState::healthy);
+}
+
 TEST_F(VerdictMachineTest, isolates_an_axis_that_its_own_values_prove_broken)
 {
     feed(healthy(), 1, axis_2);
-    EXPECT_EQ(state(), VerdictState::suspect);
+    EXPECT_EQ(state(), VerdictState::provisional) << "out at once";
     EXPECT_EQ(machine_.verdict().suspect_mask, axis_2);
     feed(healthy(), 1, axis_2);
     EXPECT_EQ(machine_.verdict().isolated_mask, axis_2);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <Eigen/QR>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -35,15 +36,10 @@ tl::expected<void, std::string> check_settings(const ObserverSettings& settings,
             fmt::format("sigma: one figure, or one for each of the {} channels, got {}", channels, settings.sigma.size()));
     bool noisy = false;
     for (const double sigma : settings.sigma) {
-        if (!(sigma >= 0) || !std::isfinite(sigma)) return tl::unexpected(fmt::format("sigma must be 0 or more, got {}", sigma));
+        if (!sigma_bounds.hold(sigma)) return tl::unexpected(settings::out_of_bounds("sigma", sigma_bounds, "", sigma));
         noisy = noisy || sigma > 0;
     }
-    if (!(settings.model_error >= 0) || !(settings.model_error < 1))
-        return tl::unexpected(fmt::format("model_error must be from 0 to below 1, got {}", settings.model_error));
-    if (!(settings.false_alarm_probability > 0) || !(settings.false_alarm_probability < 1))
-        return tl::unexpected(fmt::format("the false-alarm probability must be between 0 and 1, got {}", settings.false_alarm_probability));
-    if (settings.threshold && !(*settings.threshold > 0))
-        return tl::unexpected(fmt::format("the threshold must be above 0, got {}", *settings.threshold));
+    if (const auto bounded = settings::check(observer_record(), settings); !bounded) return bounded;
     if (!settings.threshold && !noisy)
         return tl::unexpected(std::string("nothing to compare residuals with: give a threshold, or the sigma of the channels"));
     return {};
@@ -56,6 +52,26 @@ double sigma_of(const ObserverSettings& settings, std::size_t channel)
 }
 
 }  // namespace
+
+settings::Record<ObserverSettings> observer_record()
+{
+    static constexpr std::array<settings::Setting<ObserverSettings>, 4> record{{
+        {"model_error",
+         &ObserverSettings::model_error,
+         "",
+         {.lowest = 0, .highest = 1, .highest_included = false},
+         "Bound of the relative error of every entry of the plant's matrices A and B."},
+        {"pfa", &ObserverSettings::false_alarm_probability, "", settings::probability, "Probability of a false alarm in one frame."},
+        {"threshold", &ObserverSettings::threshold, "", settings::above_zero, "Limit of every residual and metric, in the channels' unit.",
+         "from noise and model error"},
+        {"least_contrast",
+         &ObserverSettings::least_contrast,
+         "",
+         {.lowest = 1},
+         "`directional`: poles are refused unless the right metric exceeds the wrong one so many times."},
+    }};
+    return record;
+}
 
 tl::expected<ObserverScheme, std::string> parse_observer_scheme(std::string_view word)
 {

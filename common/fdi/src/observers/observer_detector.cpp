@@ -18,7 +18,7 @@ tl::expected<std::unique_ptr<ObserverDetector>, std::string> ObserverDetector::m
 {
     auto bank = ObserverBank::make(settings, interval_s);
     if (!bank) return tl::unexpected(bank.error());
-    if (!(margin >= 1)) return tl::unexpected("margin must be 1 or more, got " + std::to_string(margin));
+    if (!observer_margin_bounds.hold(margin)) return tl::unexpected(settings::out_of_bounds("margin", observer_margin_bounds, "", margin));
     const auto settling_frames = bank->start(ObserverBank::Outputs::Zero(settings.plant.outputs()), 0);
     std::unique_ptr<ObserverDetector> detector(new ObserverDetector(std::move(*bank), interval_s, margin));
     detector->naming_frames_ = settling_frames;

@@ -1,173 +1,157 @@
 #include "verdict/axis_health.hpp"
 
-#include "quorient/geometry/redundancy.hpp"
-
-#include <Eigen/Dense>
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 namespace quorient::fdi {
 namespace {
 
 constexpr int absent_of_32 = 8;
+constexpr std::uint32_t last_8 = 0xff;
+
 constexpr double beyond_range = 1.02;
 constexpr double near_range = 0.975;
 constexpr double others_range = 0.8;
-constexpr double moving_sigmas = 6;
-constexpr unsigned repeats_while_it_should_move = 2;
 
-/// ln 1e-9, the chance of a run of repeats that is taken for a frozen axis at rest.
-constexpr double improbable_run = -20.7;
+constexpr unsigned least_repeats = 4;
+constexpr double least_repeated_s = 0.03;
+constexpr double moved_quanta = 5;
+constexpr double moved_sigmas = 10;
+constexpr double least_motion = 1e-7;  ///< rad/s; m/s^2: more than rounding
 
-/// A habit is known from at least this many frames, and follows the last few thousand.
-constexpr double habit_frames = 200;
-constexpr double habit_memory = 4096;
+/// An increment is a rate times an interval: their quotient is the rate again up to rounding.
+constexpr double rounding = 1e-12;
+
+/// An axis's noise is known after this many frames that brought something new.
+constexpr unsigned habit_frames = 50;
+constexpr double habit_memory = 200;
 
 bool present(const Measurement& measurement, std::size_t axis)
 {
     return has_axis(measurement.valid, axis) && std::isfinite(measurement.increment[axis]);
 }
 
-/// Whether the other axes, without those of one further instrument, see this one at its range after all: then that instrument may be the
-/// faulty one, whose error the prediction from all of them shares.
-bool is_borne_out(const geometry::SensorCluster& cluster, const Measurement& measurement, std::size_t axis, double least)
-{
-    constexpr double least_determinant = 1e-3;
-    const std::size_t last = *std::max_element(cluster.instrument.begin(), cluster.instrument.end());
-    for (std::size_t left_out = 0; left_out <= last; ++left_out) {
-        if (left_out == cluster.instrument[axis]) continue;
-        Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-        for (std::size_t other = 0; other < cluster.size(); ++other) {
-            if (other == axis || cluster.instrument[other] == left_out || !present(measurement, other)) continue;
-            const auto row = cluster.axes.row(static_cast<Eigen::Index>(other));
-            information += row.transpose() * row;
-            sum += row.transpose() * measurement.increment[other];
-        }
-        if (information.determinant() < least_determinant) continue;
-        const double seen = cluster.axes.row(static_cast<Eigen::Index>(axis)).dot(information.inverse() * sum);
-        if (std::abs(seen) >= least) return true;
-    }
-    return false;
-}
-
 }  // namespace
 
-AxisHealth::AxisHealth(const geometry::SensorCluster& cluster) : cluster_(cluster), space_(cluster.axes), moving_step_(cluster.axes.rows())
-{
-    for (std::size_t axis = 0; axis < cluster.size(); ++axis) {
-        const auto i = static_cast<Eigen::Index>(axis);
-        moving_step_(i) = moving_sigmas * std::sqrt(2 * cluster.sigma(i) * cluster.sigma(i) + cluster.quantum(i) * cluster.quantum(i) / 3);
-        if (cluster.sigma(i) > 0 && cluster.sigma(i) >= cluster.quantum(i) / 4) noisy_ |= axis_bit(axis);
-    }
-    work_with(cluster.all());
-}
+AxisHealth::AxisHealth(const geometry::SensorCluster& cluster) : cluster_(cluster), others_(cluster) {}
 
 void AxisHealth::reset()
 {
-    history_.fill({});
-    fault_.fill(AxisFault::none);
-    moving_.fill(false);
     broken_ = 0;
+    absent_ = 0;
+    missing_.fill(0);
+    run_.fill({});
+    habit_.fill({});
+    fault_.fill(AxisFault::none);
 }
 
 AxisMask AxisHealth::assess(const Measurement& measurement)
 {
-    predict(measurement);
+    if (measurement.identity.sequence != sequence_ + 1) run_.fill({});
+    sequence_ = measurement.identity.sequence;
+    AxisMask here = 0;
+    for (std::size_t axis = 0; axis < cluster_.size(); ++axis) {
+        if (present(measurement, axis)) here |= axis_bit(axis);
+        count_absence(axis, has_axis(here, axis));
+    }
+    if (measurement.interval_s > 0) others_.update(measurement, here & ~broken_);  // what was just broken does not count against others
     broken_ = 0;
     for (std::size_t axis = 0; axis < cluster_.size(); ++axis) {
-        remember(measurement, axis);
+        fault_[axis] = AxisFault::none;
+        if (!has_axis(here, axis) || !(measurement.interval_s > 0)) continue;
+        follow(measurement, axis);
         fault_[axis] = judge(measurement, axis);
         if (fault_[axis] != AxisFault::none) broken_ |= axis_bit(axis);
     }
     return broken_;
 }
 
-void AxisHealth::predict(const Measurement& measurement)
+void AxisHealth::count_absence(std::size_t axis, bool here)
 {
-    AxisMask used = 0;
-    geometry::AxisVector z = geometry::AxisVector::Zero(cluster_.axes.rows());
-    for (std::size_t axis = 0; axis < cluster_.size(); ++axis) {
-        if (!present(measurement, axis) || has_axis(broken_, axis)) continue;  // what was just broken does not speak for others
-        z(static_cast<Eigen::Index>(axis)) = measurement.increment[axis];
-        used |= axis_bit(axis);
-    }
-    if (used != space_.used()) work_with(used);
-    const geometry::AxisVector parity = space_.vector(z);
-    const Eigen::Vector3d body = least_squares_ * z;
-    for (std::size_t axis = 0; axis < cluster_.size(); ++axis) {
-        const auto i = static_cast<Eigen::Index>(axis);
-        History& history = history_[axis];
-        const bool outside = !has_axis(used, axis);
-        const bool known = outside ? spans_ : space_.sees(i);
-        double predicted = 0;
-        if (known) predicted = outside ? cluster_.axes.row(i).dot(body) : z(i) - space_.fault_estimate(i, parity);
-        moving_[axis] = known && history.is_predicted && std::abs(predicted - history.predicted) > moving_step_(i);
-        history.predicted = predicted;
-        history.is_predicted = known;
-    }
+    missing_[axis] = (missing_[axis] << 1) | (here ? 0U : 1U);
+    if (std::popcount(missing_[axis]) >= absent_of_32) absent_ |= axis_bit(axis);
+    if ((missing_[axis] & last_8) != 0) return;
+    absent_ &= ~axis_bit(axis);
 }
 
-void AxisHealth::work_with(AxisMask used)
+/// A run of equal values, or the next step.
+void AxisHealth::follow(const Measurement& measurement, std::size_t axis)
 {
-    space_ = geometry::ParitySpace(cluster_.axes, used);
-    spans_ = geometry::rank_of(cluster_.axes, used) == 3;
-    geometry::Axes axes = cluster_.axes;
-    for (Eigen::Index axis = 0; axis < axes.rows(); ++axis)
-        if (!has_axis(used, static_cast<std::size_t>(axis))) axes.row(axis).setZero();
-    least_squares_ = decltype(least_squares_)::Zero(3, axes.rows());
-    if (spans_) least_squares_ = (axes.transpose() * axes).inverse() * axes.transpose();
+    Run& run = run_[axis];
+    const double rate = measurement.increment[axis] / measurement.interval_s;
+    const bool same = run.known && std::abs(rate - run.rate) <= rounding * std::abs(rate) && !is_near_range(measurement, axis);
+    if (same) return repeat(measurement, axis);
+    learn(axis, rate);
+    const OthersView::Range& others = others_.of(axis);
+    run = {.rate = rate, .known = true, .lowest_high = others.high, .highest_low = others.low, .compared = others.known};
+    for (std::size_t other = 0; other < cluster_.size(); ++other) run.begin[other] = measurement.increment[other] / measurement.interval_s;
 }
 
-void AxisHealth::remember(const Measurement& measurement, std::size_t axis)
+void AxisHealth::repeat(const Measurement& measurement, std::size_t axis)
 {
-    History& history = history_[axis];
-    const bool here = present(measurement, axis);
-    history.absent_frames = (history.absent_frames << 1) | (here ? 0U : 1U);
-    if (!here) return;
+    Run& run = run_[axis];
+    const OthersView::Range& others = others_.of(axis);
+    ++run.repeats;
+    run.seconds += measurement.interval_s;
+    if (!others.known) return;
+    run.independent = run.independent && others.independent;
+    for (std::size_t other = 0; other < cluster_.size() && !run.independent; ++other) {
+        const double motion = std::abs(measurement.increment[other] / measurement.interval_s - run.begin[other]);
+        if (present(measurement, other) && motion > visible_motion(other)) run.moved |= axis_bit(other);
+    }
+    run.lowest_high = run.compared ? std::min(run.lowest_high, others.high) : others.high;
+    run.highest_low = run.compared ? std::max(run.highest_low, others.low) : others.low;
+    run.compared = true;
+}
 
-    const double value = measurement.increment[axis];
-    // Beyond its range a sound axis repeats its limit as long as the motion stays there: is_railed judges that.
-    const bool repeat = history.known && !is_near_range(measurement, axis) &&
-                        std::bit_cast<std::uint64_t>(value) == std::bit_cast<std::uint64_t>(history.last);
-    if (repeat) {
-        ++history.repeats;
-        // Around a turning point an axis may truly come back to the value it had: then the others agree with it, and it lives.
-        const bool contradicted = std::abs(value - history.predicted) > moving_step_(static_cast<Eigen::Index>(axis));
-        if (moving_[axis]) history.repeats_in_motion = contradicted ? history.repeats_in_motion + 1 : 0;
-    } else {
-        // The run that has ended joins the habit; one that goes on might be a fault and does not.
-        history.seen += history.repeats + 1;
-        history.repeated += history.repeats;
-        history.repeats = 0;
-        history.repeats_in_motion = 0;
+void AxisHealth::learn(std::size_t axis, double rate)
+{
+    Habit& habit = habit_[axis];
+    const Run& run = run_[axis];
+    const double step = std::abs(rate - run.rate);
+    if (run.known && step > rounding * std::abs(rate) && (habit.quantum == 0 || step < habit.quantum)) habit.quantum = step;
+    const OthersView::Range& others = others_.of(axis);
+    if (!others.known) return;
+    const double difference = rate - (others.low + others.high) / 2;
+    if (run.known && run.repeats == 0) {
+        const double change = difference - habit.last_difference;
+        habit.frames = std::min(habit.frames + 1, 1U << 20);
+        habit.variance += (change * change / 2 - habit.variance) / std::min<double>(habit.frames, habit_memory);
     }
-    if (history.seen > habit_memory) {
-        history.seen /= 2;
-        history.repeated /= 2;
-    }
-    history.last = value;
-    history.known = true;
+    habit.last_difference = difference;
 }
 
 AxisFault AxisHealth::judge(const Measurement& measurement, std::size_t axis) const
 {
-    const History& history = history_[axis];
-    if (std::popcount(history.absent_frames) >= absent_of_32) return AxisFault::absent;
-    if (!present(measurement, axis)) return AxisFault::none;
     const double limit = cluster_.range(static_cast<Eigen::Index>(axis)) * measurement.interval_s;
     if (limit > 0 && std::abs(measurement.increment[axis]) > beyond_range * limit) return AxisFault::out_of_range;
     if (is_railed(measurement, axis)) return AxisFault::rail;
-    if (has_axis(noisy_, axis) && is_frozen(history)) return history.last == 0 ? AxisFault::zero : AxisFault::frozen;
-    return AxisFault::none;
+    if (!is_stuck(axis)) return AxisFault::none;
+    return run_[axis].rate == 0 ? AxisFault::zero : AxisFault::stuck;
 }
 
-bool AxisHealth::is_frozen(const History& history) const
+bool AxisHealth::is_stuck(std::size_t axis) const
 {
-    if (history.repeats_in_motion >= repeats_while_it_should_move) return true;
-    if (history.seen < habit_frames) return false;
-    return history.repeats * std::log((history.repeated + 1) / (history.seen + 2)) < improbable_run;
+    const Run& run = run_[axis];
+    if (run.repeats < least_repeats || run.seconds < least_repeated_s || !run.compared) return false;
+    if (!run.independent && std::popcount(run.moved) < 2) return false;
+    return run.highest_low - run.lowest_high > visible_motion(axis);
+}
+
+/// Infinite until the axis's noise is known.
+double AxisHealth::visible_motion(std::size_t axis) const
+{
+    const Habit& habit = habit_[axis];
+    const auto i = static_cast<Eigen::Index>(axis);
+    const double stated_sigma = cluster_.sigma(i) / cluster_.interval_s;
+    const double stated_quantum = cluster_.quantum(i) / cluster_.interval_s;
+    const bool known = cluster_.interval_s > 0 && (stated_sigma > 0 || habit.frames >= habit_frames);
+    if (!known) return std::numeric_limits<double>::infinity();
+    const double quantum = stated_quantum > 0 ? stated_quantum : habit.quantum;
+    const double sigma = std::max(stated_sigma, habit.frames >= habit_frames ? std::sqrt(habit.variance) : 0);
+    return std::max({moved_quanta * quantum, moved_sigmas * sigma, least_motion});
 }
 
 bool AxisHealth::is_near_range(const Measurement& measurement, std::size_t axis) const
@@ -178,10 +162,9 @@ bool AxisHealth::is_near_range(const Measurement& measurement, std::size_t axis)
 
 bool AxisHealth::is_railed(const Measurement& measurement, std::size_t axis) const
 {
-    const History& history = history_[axis];
-    const double limit = cluster_.range(static_cast<Eigen::Index>(axis)) * measurement.interval_s;
-    return is_near_range(measurement, axis) && history.is_predicted && std::abs(history.predicted) < others_range * limit &&
-           !is_borne_out(cluster_, measurement, axis, others_range * limit);
+    const OthersView::Range& others = others_.of(axis);
+    const double least = others_range * cluster_.range(static_cast<Eigen::Index>(axis));
+    return is_near_range(measurement, axis) && others.known && others.low > -least && others.high < least;
 }
 
 }  // namespace quorient::fdi

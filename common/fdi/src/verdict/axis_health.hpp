@@ -1,8 +1,8 @@
 #pragma once
 
 #include "quorient/fdi/detector.hpp"
-#include "quorient/geometry/parity_space.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"
+#include "verdict/others_view.hpp"
 
 #include <array>
 #include <cstdint>
@@ -12,20 +12,21 @@ namespace quorient::fdi {
 /// Why an axis proves itself broken.
 enum class AxisFault : std::uint8_t {
     none,
-    absent,        ///< NaN, not valid or late in at least 8 of the last 32 frames
     out_of_range,  ///< beyond its stated range by more than 2 %
     rail,          ///< at its range while the others see less than 80 % of it there, whichever one instrument is left out of them
-    frozen,        ///< bitwise the same while it should have moved, or for longer than its noise ever allows
-    zero,          ///< frozen at exactly 0
+    stuck,         ///< repeats one value while the others moved
+    zero,          ///< stuck at exactly 0
 };
 
-/// Tests of single axes by their own values: a dead, frozen or railed axis need not wait for parity.
+/// Tests of single axes by their own values: a stuck or railed axis need not wait for parity.
 ///
-/// Frozen: two or more bitwise repeats (three equal values) in frames in which the other axes say that this one moved, and is elsewhere, by
-/// more than six standard deviations (at a turning point of its own motion a sound axis repeats itself however wildly the others move); or,
-/// without such help, so many repeats that an axis which repeats as often as this one used to would show them once in 1e9 tries. A single
-/// repeat is normal on real hardware. Not asked of axes whose noise is below a quarter of their quantum (these may repeat for ever), nor of
-/// values within 2.5 % of the range (in a motion beyond it a sound axis repeats its limit).
+/// Stuck: five equal values over 0.03 s or more, while the others moved by more than max(5 quanta, 10 sigma), whichever one of them is left out
+/// (OthersView). Where too few axes are left for that, as on four, at least two others must have moved by themselves: one that moves alone is faulty.
+/// Runs do not reach over lost frames. At rest a sound axis may repeat itself for ever. sigma is the larger of the stated one and what the axis has shown against the
+/// others; the quantum is the stated one, or else the least step that the axis has made. Values within 2.5 % of the range are not asked: beyond its range
+/// a sound axis repeats its limit.
+///
+/// An axis without data is no broken one: it is left out while it has none, and `absent` says so.
 ///
 /// Not here, because without redundancy they look like motion: bias, scale, sign, spikes within the range. Parity finds them.
 /// Allocates nothing.
@@ -39,38 +40,51 @@ public:
     /// What the newest frame said of each axis.
     AxisFault fault(std::size_t axis) const { return fault_[axis]; }
 
+    /// Axes without data (NaN, not valid or late) in at least 8 of the last 32 frames, until they have had data for 8 frames.
+    AxisMask absent() const { return absent_; }
+
     void reset();
 
 private:
-    struct History {
-        double last = 0;
+    /// One value and how long it has been repeated.
+    struct Run {
+        double rate = 0;
         bool known = false;
-        double predicted = 0;  ///< by the other axes, for the newest frame
-        bool is_predicted = false;
-        std::uint32_t absent_frames = 0;  ///< bit k = absent k frames ago
-        unsigned repeats = 0;             ///< in a row, up to the newest frame
-        unsigned repeats_in_motion = 0;
-        double seen = 0;  ///< frames and repeats that the habit is known from
-        double repeated = 0;
+        unsigned repeats = 0;
+        double seconds = 0;
+        double lowest_high = 0;  ///< of what the others said during the run: all of them were below, above
+        double highest_low = 0;
+        bool compared = false;
+        bool independent = true;                   ///< every comparison survives a fault of any one of the others
+        std::array<double, max_axes> begin{};      ///< what all axes read when it began [rate]
+        AxisMask moved = 0;                        ///< axes that have visibly left that value
+    };
+    /// How an axis usually behaves.
+    struct Habit {
+        double quantum = 0;         ///< least step so far; 0 = none yet
+        double variance = 0;        ///< of its differences to the others, from frame to frame
+        double last_difference = 0;
+        unsigned frames = 0;
     };
 
-    void predict(const Measurement& measurement);
-    void work_with(AxisMask used);
     AxisFault judge(const Measurement& measurement, std::size_t axis) const;
-    bool is_frozen(const History& history) const;
+    bool is_stuck(std::size_t axis) const;
+    double visible_motion(std::size_t axis) const;
     bool is_near_range(const Measurement& measurement, std::size_t axis) const;
     bool is_railed(const Measurement& measurement, std::size_t axis) const;
-    void remember(const Measurement& measurement, std::size_t axis);
+    void count_absence(std::size_t axis, bool here);
+    void follow(const Measurement& measurement, std::size_t axis);
+    void repeat(const Measurement& measurement, std::size_t axis);
+    void learn(std::size_t axis, double rate);
 
     geometry::SensorCluster cluster_;
-    geometry::ParitySpace space_;  ///< of the axes that are there and sound
-    bool spans_ = false;           ///< these axes span space
-    Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, static_cast<int>(max_axes)> least_squares_;  ///< the body from them
-    geometry::AxisVector moving_step_;     ///< a change beyond which an axis moves
-    AxisMask noisy_ = 0;                   ///< axes whose noise shakes their last bit
-    AxisMask broken_ = 0;                  ///< in the newest frame
-    std::array<bool, max_axes> moving_{};  ///< the others say that this axis moved since the frame before
-    std::array<History, max_axes> history_{};
+    OthersView others_;
+    AxisMask broken_ = 0;  ///< in the newest frame
+    std::uint64_t sequence_ = 0;  ///< of the newest frame
+    AxisMask absent_ = 0;
+    std::array<std::uint32_t, max_axes> missing_{};  ///< bit k = without data k frames ago
+    std::array<Run, max_axes> run_{};
+    std::array<Habit, max_axes> habit_{};
     std::array<AxisFault, max_axes> fault_{};
 };
 

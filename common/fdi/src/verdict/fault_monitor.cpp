@@ -15,6 +15,23 @@
 
 namespace quorient::fdi {
 
+namespace {
+
+/// What an axis's own values prove, in the words of the wire.
+Diagnosis diagnosis_of(AxisFault fault)
+{
+    switch (fault) {
+        case AxisFault::stuck: return Diagnosis::stuck;
+        case AxisFault::zero: return Diagnosis::zero;
+        case AxisFault::rail: return Diagnosis::saturated;
+        case AxisFault::out_of_range: return Diagnosis::outside_class;
+        case AxisFault::none: break;
+    }
+    return Diagnosis::none;
+}
+
+}  // namespace
+
 struct FaultMonitor::Watch {
     explicit Watch(const VerdictMachine& its_machine) : machine(its_machine) {}
 
@@ -22,6 +39,8 @@ struct FaultMonitor::Watch {
     std::optional<AxisHealth> health;                          ///< of axes that are directions in space
     std::optional<Readmission> readmission;                    ///< of such axes, where axes may return by themselves
     std::optional<ObserverReadmission> observer_readmission;  ///< of other channels, likewise
+    std::array<AxisDiagnosis, max_axes> known{};  ///< the latest diagnosis of each isolated axis
+    std::array<Diagnosis, max_axes> proved{};     ///< what its own values proved before it was isolated
 };
 
 tl::expected<FaultMonitor, std::string> FaultMonitor::make(const DetectorSettings& detector, const VerdictSettings& verdict,
@@ -84,6 +103,7 @@ const FaultVerdict& FaultMonitor::assess(const SensorFrame& frame)
     const AxisMask newly = watch_->machine.isolated() & ~before;
     if (watch_->readmission && newly != 0) watch_->readmission->excluded(newly, measurement, all_ & ~watch_->machine.isolated());
     after_change(before);
+    remember_proofs(broken);
     if (watch_->observer_readmission) {
         const bool healthy = state_of(verdict_) == VerdictState::healthy;
         returning_ = watch_->observer_readmission->watch(*detector_, frame.interval_s, watch_->machine.isolated(), newly, healthy);
@@ -94,6 +114,48 @@ const FaultVerdict& FaultMonitor::assess(const SensorFrame& frame)
     verdict_.kind = frame.kind;
     verdict_.detectable_remaining = static_cast<std::uint8_t>(detector_->detectable_remaining());
     return verdict_;
+}
+
+/// What an axis's own values prove is certain; else the method's diagnosis counts.
+void FaultMonitor::remember_proofs(AxisMask broken)
+{
+    for (std::size_t axis = 0; axis < max_axes; ++axis) {
+        AxisDiagnosis& known = watch_->known[axis];
+        Diagnosis& proved = watch_->proved[axis];
+        if (!has_axis(watch_->machine.isolated(), axis)) {
+            known = {};
+            proved = Diagnosis::none;
+        }
+        if (has_axis(broken, axis)) proved = diagnosis_of(watch_->health->fault(axis));
+        if (assessment_.diagnosis[axis].kind != Diagnosis::none) known = assessment_.diagnosis[axis];
+        if (proved != Diagnosis::none) known = {.kind = proved, .bias = known.bias, .bias_sigma = known.bias_sigma};
+    }
+}
+
+FaultDiagnosis FaultMonitor::diagnosis() const
+{
+    FaultDiagnosis message;
+    message.epoch = verdict_.epoch;
+    message.sequence = verdict_.sequence;
+    message.sample_time_ns = verdict_.sample_time_ns;
+    message.unit = verdict_.unit;
+    message.kind = verdict_.kind;
+    message.provisional_mask = provisional_mask(verdict_);
+    message.absent_mask = watch_->health ? watch_->health->absent() : 0;
+    message.degraded_mask = assessment_.degraded & ~verdict_.isolated_mask;
+    const AxisMask told = verdict_.isolated_mask | message.provisional_mask | message.degraded_mask;
+    for (std::size_t axis = 0; axis < max_axes; ++axis) {
+        const AxisDiagnosis& known = watch_->known[axis];
+        auto kind = has_axis(told, axis) ? known.kind : Diagnosis::none;
+        if (kind == Diagnosis::none && has_axis(message.absent_mask, axis)) kind = Diagnosis::absent;
+        message.diagnosis[axis] = octet(kind);
+        if (kind == Diagnosis::none || kind == Diagnosis::absent) continue;
+        message.size[axis] = known.size;
+        message.sigma[axis] = known.sigma;
+        message.bias[axis] = known.bias;
+        message.bias_sigma[axis] = known.bias_sigma;
+    }
+    return message;
 }
 
 void FaultMonitor::adopt(const Exclusions& excluded_from)

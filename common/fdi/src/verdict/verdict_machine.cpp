@@ -31,14 +31,7 @@ tl::expected<VerdictMachine, std::string> VerdictMachine::make(const VerdictSett
     if (axis_count < least_axes || axis_count > max_axes)
         return tl::unexpected("a verdict needs " + std::to_string(least_axes) + " to " + std::to_string(max_axes) + " axes, got " +
                               std::to_string(axis_count));
-    if (settings.confirm_window < 1 || settings.confirm_window > max_window)
-        return tl::unexpected("the confirmation window must be 1 to " + std::to_string(max_window) + " frames, got " +
-                              std::to_string(settings.confirm_window));
-    if (settings.confirm_required < 1 || settings.confirm_required > settings.confirm_window)
-        return tl::unexpected("confirmation needs 1 to " + std::to_string(settings.confirm_window) + " frames of its window, got " +
-                              std::to_string(settings.confirm_required));
-    if (settings.readmit_after_s && !(*settings.readmit_after_s > 0))
-        return tl::unexpected("readmit_after_s must be above 0, got " + std::to_string(*settings.readmit_after_s));
+    if (const auto checked = check(settings); !checked) return tl::unexpected(checked.error());
     return VerdictMachine(settings, axis_count, least_axes);
 }
 
@@ -66,6 +59,7 @@ const FaultVerdict& VerdictMachine::update(Identity identity, const Assessment& 
             if (often && (broken_frames_[axis] & 1U) != 0) latch(axis_bit(axis), broken_from_[axis]);
         }
     }
+    leave_out(assessment, broken);
     publish(newest, assessment);
     if (!newest.suspicious() && newest.outcome != Outcome::warming_up) first_unexplained_ = identity.sequence + 1;
     return verdict_;
@@ -88,7 +82,7 @@ AxisMask VerdictMachine::readmit(AxisMask axes)
     if (returning == 0) return 0;
     verdict_.excluded_from.readmit(returning);
     verdict_.isolated_mask &= ~returning;
-    verdict_.working_mask |= returning;
+    work_with_the_rest();
     drop_evidence();
     return returning;
 }
@@ -96,6 +90,7 @@ AxisMask VerdictMachine::readmit(AxisMask axes)
 void VerdictMachine::begin_epoch(std::uint64_t epoch)
 {
     verdict_.epoch = epoch;
+    end_provisional(all_);
     if (started_) verdict_.excluded_from = verdict_.excluded_from.in_new_epoch();
     started_ = true;
     frames_ = 0;
@@ -176,13 +171,39 @@ void VerdictMachine::latch(AxisMask axes, std::uint64_t onset)
 {
     for (std::size_t axis = 0; axis < max_axes; ++axis) {
         if (!has_axis(axes & ~verdict_.isolated_mask, axis)) continue;
-        verdict_.excluded_from[axis] = guarded(onset, settings_.onset_guard_frames);
+        // What was left out provisionally stays out from where it was.
+        verdict_.excluded_from[axis] = std::min(guarded(onset, settings_.onset_guard_frames), verdict_.excluded_from[axis]);
         broken_frames_[axis] = 0;
     }
     broken_ &= ~axes;
     verdict_.isolated_mask |= axes;
-    verdict_.working_mask = all_ & ~verdict_.isolated_mask;
+    work_with_the_rest();
     drop_evidence();
+}
+
+/// What the method wants out, and what proves itself broken in this frame.
+void VerdictMachine::leave_out(const Assessment& assessment, AxisMask broken)
+{
+    const bool can = frames_ > settings_.warm_up_frames;
+    const AxisMask asked = can ? (assessment.provisional | broken) & all_ & ~verdict_.isolated_mask : 0;
+    const AxisMask left = all_ & ~verdict_.isolated_mask & ~asked;
+    const AxisMask out = std::popcount(left) >= least_axes_ ? asked : 0;
+    end_provisional(~out);
+    const std::uint64_t from = guarded(std::min(assessment.provisional_from, verdict_.sequence), settings_.onset_guard_frames);
+    const AxisMask begins = out & ~provisional_mask(verdict_);
+    verdict_.excluded_from.exclude(begins & assessment.provisional, from);
+    verdict_.excluded_from.exclude(begins & ~assessment.provisional, verdict_.sequence);
+    work_with_the_rest();
+}
+
+void VerdictMachine::end_provisional(AxisMask axes)
+{
+    verdict_.excluded_from.readmit(provisional_mask(verdict_) & axes);
+}
+
+void VerdictMachine::work_with_the_rest()
+{
+    verdict_.working_mask = all_ & ~verdict_.isolated_mask & ~provisional_mask(verdict_);
 }
 
 const VerdictMachine::Evidence* VerdictMachine::latest_suspicion() const
@@ -206,6 +227,11 @@ void VerdictMachine::publish(const Evidence& newest, const Assessment& assessmen
     auto state = verdict_.isolated_mask != 0 ? VerdictState::isolated : VerdictState::healthy;
     if (broken_ != 0) state = VerdictState::suspect;
     if (const Evidence* suspicion = latest_suspicion()) state = publish_suspicion(*suspicion);
+    if (const AxisMask out = provisional_mask(verdict_); out != 0) {
+        state = VerdictState::provisional;
+        verdict_.suspect_mask |= out;
+    }
+    if (assessment.saturated) state = VerdictState::saturated;
     if (std::popcount(verdict_.working_mask) < least_axes_) state = VerdictState::blind;
     const bool learning = newest.outcome == Outcome::warming_up && state == VerdictState::healthy;
     if (learning || frames_ <= settings_.warm_up_frames) state = VerdictState::warming_up;

@@ -19,6 +19,8 @@ namespace quorient::fdi {
 ///   these frames knew another set of equal or smaller size that explains it; or after m of the last n frames found it broken;
 /// - an isolated axis stays isolated until readmit(): no frame, gap, warm-up or new epoch clears it;
 /// - an axis that no explaining set of the last n frames contains is never blamed;
+/// - an axis that the method wants out provisionally, or that proves itself broken, is out in this verdict, unless fewer than three axes would
+///   be left; it is back as soon as neither is so, or latched;
 /// - every verdict is the complete state. Candidate sets are of axes beyond isolated_mask.
 ///
 /// Allocates nothing.
@@ -70,6 +72,9 @@ private:
     void isolate_named(const Evidence& newest, std::uint64_t estimated_onset);
     void count_broken(AxisMask broken);
     void latch(AxisMask axes, std::uint64_t onset);
+    void leave_out(const Assessment& assessment, AxisMask broken);
+    void end_provisional(AxisMask axes);
+    void work_with_the_rest();
     void publish(const Evidence& newest, const Assessment& assessment);
     VerdictState publish_suspicion(const Evidence& suspicion);
     const Evidence* latest_suspicion() const;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "quorient/fdi/detail.hpp"
+#include "quorient/messages/codes.hpp"
 #include "quorient/messages/identity.hpp"
 #include "quorient/messages/limits.hpp"
 
@@ -34,6 +35,15 @@ enum class Outcome : std::uint8_t {
     blind,      ///< the data contradict every hypothesis
 };
 
+/// What is wrong with one axis, and by how much.
+struct AxisDiagnosis {
+    Diagnosis kind = Diagnosis::none;
+    double size = 0;        ///< in the unit of the diagnosis (codes.hpp)
+    double sigma = 0;       ///< standard deviation of the size
+    double bias = 0;        ///< whatever the diagnosis [rad/s]
+    double bias_sigma = 0;  ///< its standard deviation
+};
+
 struct Assessment {
     Outcome outcome = Outcome::warming_up;
     AxisMask isolated = 0;                             ///< named axes; under `suspect` the likeliest culprit, if there is one
@@ -43,6 +53,11 @@ struct Assessment {
     double statistic = 0;
     double threshold = 0;                     ///< in the statistic's unit
     std::uint64_t onset = never;              ///< first sequence that looks contaminated, where the method estimates it
+    AxisMask provisional = 0;                 ///< contradicted in this frame: to be left out at once, though it may pass
+    std::uint64_t provisional_from = never;   ///< first sequence to be left out
+    AxisMask degraded = 0;                    ///< noisier or later than others, with no harm to the attitude
+    std::array<AxisDiagnosis, max_axes> diagnosis{};  ///< of axes that are left out, named or excluded
+    bool saturated = false;                   ///< all instruments are at their range: the rate is unknown, nobody is faulty
     std::array<double, max_axes> residual{};  ///< in the unit of the measurement
     std::array<double, max_axes> bound{};
 

@@ -4,6 +4,7 @@
 #include "quorient/fdi/settings.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"
 #include "quorient/messages/exclusions.hpp"
+#include "quorient/messages/fault_diagnosis.hpp"
 #include "quorient/messages/fault_verdict.hpp"
 #include "quorient/messages/sensor_frame.hpp"
 
@@ -48,6 +49,10 @@ public:
     /// By command. @returns false where none of the axes was excluded.
     bool readmit(AxisMask axes);
 
+    /// What is wrong with the axes that are isolated, left out, degraded or absent, as of the newest frame. The identity is the newest verdict's;
+    /// `detector` is left to the process.
+    FaultDiagnosis diagnosis() const;
+
     const Detector& detector() const { return *detector_; }
     const Assessment& assessment() const { return assessment_; }  ///< of the newest frame
 
@@ -58,6 +63,7 @@ private:
 
     Measurement measurement_of(const SensorFrame& frame) const;
     void after_change(AxisMask before);
+    void remember_proofs(AxisMask broken);
 
     std::unique_ptr<Detector> detector_;
     std::unique_ptr<Watch> watch_;

@@ -40,7 +40,7 @@ std::span<const Method> methods();
 /// @returns nothing where no method has this name.
 const Method* find_method(std::string_view word);
 
-/// The method of settings.method on this cluster. `auto`: `vector` on four axes (parity alone cannot isolate there); `accumulating` on
+/// The method of settings.method on this cluster. `auto`: `vector` on four axes (parity alone cannot isolate there); `field` on
 /// three or more instruments that each measure all three directions, unless settings.margin or max_faults ask for more; else `subset`
 /// where settings.instruments; else `glt` with the margin of `subset`.
 /// @returns why not: an unknown name (with the known ones), a number of axes the method does not allow, a figure out of range, or

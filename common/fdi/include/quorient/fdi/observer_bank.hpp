@@ -3,6 +3,7 @@
 #include "quorient/fdi/linear_plant.hpp"
 #include "quorient/fdi/noise.hpp"
 #include "quorient/messages/limits.hpp"
+#include "quorient/settings/setting.hpp"
 
 #include <Eigen/Core>
 #include <optional>
@@ -26,11 +27,17 @@ struct ObserverSettings {
     ObserverScheme scheme = ObserverScheme::blind;
     std::vector<Poles> poles;   ///< of each channel's observer; one set for all is enough. directional: {along the fault, other}
     std::vector<double> sigma;  ///< noise of one sample of each channel, in its unit; one for all is enough; empty = 0
-    double model_error = 0;     ///< bound on the relative error of every entry of A and B
-    double false_alarm_probability = default_false_alarm_probability;  ///< of one frame
-    std::optional<double> threshold;  ///< of every residual and metric, in the channels' unit, in place of what noise and model error give
-    double least_contrast = 1.5;      ///< directional: a bank whose right metric does not exceed the other one so many times is refused
+    double model_error = 0;
+    double false_alarm_probability = default_false_alarm_probability;
+    std::optional<double> threshold;
+    double least_contrast = 1.5;
 };
+
+/// Its numbers, and what each means.
+settings::Record<ObserverSettings> observer_record();
+
+/// Bounds of one sample's standard deviation.
+inline constexpr settings::Bounds sigma_bounds = settings::not_negative;
 
 /// A number of observers that run side by side on the same samples: what each expects, and how far the samples are from it.
 ///

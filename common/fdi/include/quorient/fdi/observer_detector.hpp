@@ -10,6 +10,9 @@
 
 namespace quorient::fdi {
 
+/// Bounds of `margin`, below.
+inline constexpr settings::Bounds observer_margin_bounds{.lowest = 1};
+
 /// Fault detection by observers, behind the interface of all methods. Channels are the axes; a channel's sample is its increment divided by
 /// the interval, the known inputs are those of the frame.
 ///

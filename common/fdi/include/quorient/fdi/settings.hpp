@@ -1,5 +1,8 @@
 #pragma once
 
+#include "quorient/fdi/sensor_class.hpp"
+#include "quorient/settings/setting.hpp"
+
 #include <array>
 #include <optional>
 #include <string>
@@ -14,33 +17,45 @@ struct GatedNoise {
     double rate_error = 0;
 };
 
-/// Everything a user can set about detection; what is absent takes the method's default.
-/// Lengths of time in seconds, tolerances in the unit of the measurement (rad of one increment for gyros).
+/// Everything a user can set about detection; what is absent takes the method's default. What each means stands in detector_record().
+/// Tolerances are in the unit of the measurement (rad of one increment for gyros).
 struct DetectorSettings {
-    std::string method = "auto";  ///< auto: by the cluster, see make_detector
+    std::string method = "auto";  ///< one of methods(), see make_detector
     std::optional<double> tolerance{};
-    std::optional<double> sigma{};  ///< in place of the description's
-    std::optional<double> pfa{};    ///< false-alarm probability of one frame
+    std::optional<double> sigma{};
+    std::optional<double> pfa{};
     std::optional<double> bound{};
     std::optional<double> threshold{};
     std::optional<std::array<double, 3>> direction{};  ///< guaranteed: also the interval along this body vector
     std::optional<unsigned> max_faults{};
     std::optional<double> margin{};
-    std::optional<double> doubt{};         ///< subset: share of right isolations held back because one more, small fault is not ruled out
-    std::optional<double> motion_noise{};  ///< accumulating: times the usual errors of a moving array, see usual_motion_noise
+    std::optional<double> doubt{};
+    std::optional<double> motion_noise{};
     std::optional<GatedNoise> gated_noise{};  ///< accumulating: of the gated sums; absent: there are none
-    bool instruments = false;                 ///< a fault takes a whole instrument
+    SensorClass sensor_class = SensorClass::consumer;
+    Mount mount = Mount::board;
+    std::optional<double> delay_class_s{};
+    bool calibrated = false;  ///< field: biases and gains are those of a calibration in another run
+    bool instruments = false;
     bool relaxed = false;
-    bool bare = false;  ///< mean, relaxed invariants: the paper's rule as such, which does not look for rivals
+    bool bare = false;
 };
 
-/// From assessments to verdicts.
+/// All but the words: method, sensor class and mount.
+settings::Record<DetectorSettings> detector_record();
+
+/// From assessments to verdicts: what each means stands in verdict_record().
 struct VerdictSettings {
-    unsigned confirm_required = 2;  ///< m …
-    unsigned confirm_window = 3;    ///< … of n frames
+    unsigned confirm_required = 2;
+    unsigned confirm_window = 3;
     unsigned warm_up_frames = 10;
-    unsigned onset_guard_frames = 1;          ///< placed early: one frame late costs a contaminated increment, early costs nothing
-    std::optional<double> readmit_after_s{};  ///< absent: by command only
+    unsigned onset_guard_frames = 1;
+    std::optional<double> readmit_after_s{};
 };
+
+settings::Record<VerdictSettings> verdict_record();
+
+/// What of them cannot be together. @returns the key and why.
+tl::expected<void, std::string> check(const VerdictSettings& settings);
 
 }  // namespace quorient::fdi

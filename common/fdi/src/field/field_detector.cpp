@@ -1,0 +1,90 @@
+#include "quorient/fdi/field_detector.hpp"
+
+#include "field/state.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace quorient::fdi {
+namespace {
+
+/// Sound instruments of different make sample up to some milliseconds apart.
+constexpr double delay_of_interval = 0.1;
+constexpr double least_delay_s = 1.0e-3;
+
+/// What of the delay may change without being learned.
+constexpr double unlearned_delay = 0.5;
+
+field::Learning::Allowed allowed_by(const DetectorSettings& settings, double frame_interval_s)
+{
+    const double delay_s = settings.delay_class_s.value_or(std::max(least_delay_s, delay_of_interval * frame_interval_s));
+    return {.figures = figures_of(settings.sensor_class),
+            .calibrated = settings.calibrated,
+            .delay_s = delay_s,
+            .delay_floor_s = unlearned_delay * delay_s};
+}
+
+/// Instruments numbered by their places in the array, and the usual range where none is stated.
+geometry::SensorCluster normalised(const geometry::SensorCluster& cluster, double usual_range_rad_s)
+{
+    geometry::SensorCluster normal = cluster;
+    std::vector<std::size_t> used = cluster.instrument;
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    for (std::size_t& instrument : normal.instrument)
+        instrument = static_cast<std::size_t>(std::lower_bound(used.begin(), used.end(), instrument) - used.begin());
+    for (double& range : normal.range)
+        if (!(range > 0)) range = usual_range_rad_s;
+    return normal;
+}
+
+}  // namespace
+
+tl::expected<std::unique_ptr<FieldDetector>, std::string> FieldDetector::make(const DetectorSettings& settings,
+                                                                             const geometry::SensorCluster& cluster, const FieldRules& rules)
+{
+    if (!(cluster.interval_s > 0)) return tl::unexpected(std::string("field: the cluster's interval_s must be known"));
+    if (settings.delay_class_s && !(*settings.delay_class_s > 0))
+        return tl::unexpected("field: the delay class must be above 0 s, got " + std::to_string(*settings.delay_class_s));
+    auto normal = normalised(cluster, figures_of(settings.sensor_class).usual_range_rad_s);
+    const auto array = InstrumentArray::make(normal, geometry::AxisVector::Ones(normal.axes.rows()));
+    if (!array) return tl::unexpected("field: " + array.error());
+    auto state = std::make_unique<State>(std::move(normal), *array, settings, rules, allowed_by);
+    return std::unique_ptr<FieldDetector>(new FieldDetector(std::move(state)));
+}
+
+FieldDetector::FieldDetector(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+FieldDetector::~FieldDetector() = default;
+
+void FieldDetector::assess(const Measurement& measurement, Assessment& assessment)
+{
+    state_->assess(measurement, assessment);
+}
+
+void FieldDetector::exclude(AxisMask excluded)
+{
+    state_->exclude(excluded);
+}
+
+unsigned FieldDetector::detectable_remaining() const
+{
+    return state_->detectable_remaining();
+}
+
+std::string_view FieldDetector::reason() const
+{
+    return state_->reason();
+}
+
+void FieldDetector::reset()
+{
+    state_->reset();
+}
+
+double FieldDetector::largest_lasting() const
+{
+    return state_->largest_lasting();
+}
+
+}  // namespace quorient::fdi

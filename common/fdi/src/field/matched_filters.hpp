@@ -1,0 +1,80 @@
+#pragma once
+
+#include "field/learning.hpp"
+#include "field/window_sums.hpp"
+#include "quorient/fdi/field_detector.hpp"
+
+namespace quorient::fdi::field {
+
+/// A contradiction between one instrument and the others.
+struct Suspicion {
+    double certainty = 0;  ///< C; above 1 it is more than noise and allowances explain
+    std::size_t instrument = 0;
+    std::size_t component = 0;
+    std::size_t window = 0;  ///< frames up to the newest one
+    Filter filter = Filter::bias;
+};
+
+/// What all windows of one frame say.
+struct Suspicions {
+    Suspicion brief;                ///< the largest that may only be passing
+    Suspicion lasting;              ///< the largest of a window of `lock` or more, in three of its four quarters
+    PerInstrument brief_of{};       ///< the largest against each instrument
+    PerInstrument lasting_of{};
+    double disturbance = 0;         ///< the largest of a long window, before its low-passed twin agreed
+    double closest = 0;             ///< the largest of a long window that lasts, looked for from 0.4 on
+
+    /// The largest against any instrument but this one.
+    double against_others(std::size_t m) const;
+    double lasting_against_others(std::size_t m) const;
+};
+
+/// Compares each instrument with the others over windows of 1 to 512 frames, through three matched filters. With D = E_m - E_o, the difference
+/// to the others' mean,
+///
+///   C = |D| / ( zeta sqrt( Phi'(P + F)Phi (1 + 1/n_o) + N_m + sum N_j / n_o^2 ) + rho S_o ),
+///
+/// Phi the sums of w t phi, N of the noise, S_o the others' own scatter in this very window: they must agree among themselves to accuse one.
+///
+/// A contradiction lasts if three of the four quarters of a window of 0.4 s or more show it, and, in windows shorter than 0.84 s, if it is there in
+/// the newest frames and was there 0.32 s before: a shock of up to 0.3 s never lasts.
+class MatchedFilters {
+public:
+    /// @param low_passed  the same sums below 2 Hz: gain and delay count only where they agree
+    MatchedFilters(std::size_t instruments, double interval_s, const FieldRules& rules);
+
+    using Ages = std::array<std::uint64_t, max_instruments>;
+
+    /// @param age  frames that each instrument has been compared for without a break
+    /// @param frame  counts frames: which windows are due
+    Suspicions examine(const WindowSums& sums, const WindowSums* low_passed, const Learning& learning, InstrumentSet compared, const Ages& age,
+                       std::uint64_t frame) const;
+
+    /// The same for two instruments, which cannot be told apart: `instrument` says nothing.
+    Suspicion disagreement(const WindowSums& sums, const Learning& learning, InstrumentSet two, const Ages& age, std::uint64_t frame) const;
+
+    /// Frames after which a window of this length is looked at again.
+    static std::uint64_t frames_between_looks(std::size_t window);
+
+private:
+    struct Window;
+    struct Contrast;
+
+    Contrast contrast_of(const Window& window, const PerInstrument& deviation, const PerInstrument& own_noise, std::size_t m) const;
+    double certainty(const Contrast& contrast, Filter filter, bool lasting) const;
+    void examine(const Window& window, Filter filter, Suspicions& found) const;
+    double agreeing(const Window& window, Filter filter, std::size_t m, double certainty, bool positive) const;
+    bool matters(const Window& window, std::size_t m) const;
+    bool persists(const Window& window, Filter filter, std::size_t m) const;
+    bool in_three_quarters(const Window& window, Filter filter, std::size_t m) const;
+    bool spans(const Window& window, Filter filter, std::size_t m) const;
+    double contradiction_before(const Window& window, Filter filter, std::size_t m, std::size_t age) const;
+    bool is_due(std::size_t index, std::uint64_t frame) const;
+
+    std::size_t count_;
+    double interval_s_;
+    FieldRules rules_;
+    std::size_t lock_;  ///< frames of the shortest window that latches
+};
+
+}  // namespace quorient::fdi::field

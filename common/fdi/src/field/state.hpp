@@ -1,0 +1,121 @@
+#pragma once
+
+#include "field/comparison.hpp"
+#include "field/diagnostics.hpp"
+#include "field/fast_lane.hpp"
+#include "field/framing.hpp"
+#include "field/matched_filters.hpp"
+#include "field/presence.hpp"
+#include "field/saturation.hpp"
+#include "field/start.hpp"
+#include "quorient/fdi/field_detector.hpp"
+
+namespace quorient::fdi {
+
+/// The order of things in one frame; each of them is a class of its own.
+class FieldDetector::State {
+public:
+    State(geometry::SensorCluster cluster, const InstrumentArray& array, const DetectorSettings& settings, const FieldRules& rules,
+          field::Learning::Allowed (*allowed_by)(const DetectorSettings&, double));
+
+    void assess(const Measurement& measurement, Assessment& assessment);
+    void exclude(AxisMask excluded);
+    unsigned detectable_remaining() const;
+    std::string_view reason() const;
+    void reset();
+    double largest_lasting() const { return largest_lasting_; }
+
+private:
+    using InstrumentSet = field::InstrumentSet;
+    using Suspicion = field::Suspicion;
+
+    /// A frame with its consensus, waiting for its successor.
+    struct Pending {
+        field::Frame frame;
+        field::Comparison::Rates rates;
+        InstrumentSet present;  ///< compared, and with data
+        Eigen::Vector3d consensus;
+    };
+
+    /// What is held against one instrument.
+    struct Accusation {
+        static constexpr std::size_t most_returns = 6;
+
+        bool named = false;                  ///< until it is excluded
+        std::uint64_t left_out_until = 0;    ///< frame count
+        std::uint64_t onset = never;         ///< of the present contradiction, or of the named fault
+        std::array<std::uint64_t, most_returns> begun{};  ///< frame counts of the latest contradictions, ring
+        std::size_t contradictions = 0;
+    };
+
+    /// Why an instrument is reported as degraded, and until which frame count.
+    struct Degraded {
+        Diagnosis why = Diagnosis::none;
+        std::uint64_t until = 0;
+    };
+
+    void advance(const field::Frame& frame);
+    void start_with(const field::Frame& frame);
+    InstrumentSet comparable() const;
+    void take_in(const field::Frame& frame);
+    void compare();
+    void age_instruments();
+    void judge(const field::Suspicions& found);
+    void judge_two(InstrumentSet two);
+    void contradict(const Suspicion& suspicion);
+    void name(std::size_t m, std::uint64_t onset, const field::Blame& blame);
+    void degrade(std::size_t m, Diagnosis why);
+    void follow_fast_lane();
+    void leave_out(std::size_t m, std::uint64_t onset, std::uint64_t frames, const field::Blame& blame);
+    void keep_two(std::size_t accused);
+    bool is_left_out(std::size_t m) const;
+    bool comes_and_goes(Accusation& accused) const;
+    std::uint64_t onset_of(std::size_t m, std::size_t window) const;
+    std::uint64_t frames_in(double seconds) const;
+    void diagnose();
+    void check_erratic();
+    void check_class();
+    bool may_learn() const;
+    std::uint64_t begin_of(std::size_t window) const;
+    std::size_t oldest_kept() const;
+    void report(const Measurement& measurement, Assessment& assessment) const;
+    void report_degraded(Assessment& assessment) const;
+    void report_residuals(const Measurement& measurement, Assessment& assessment) const;
+    AxisMask axes_of(InstrumentSet instruments) const;
+
+    geometry::SensorCluster cluster_;
+    InstrumentArray array_;
+    FieldRules rules_;
+    Mount mount_;
+    ClassFigures figures_;
+    field::Framing framing_;
+    field::Presence presence_;
+    field::Start start_;
+    field::Saturation saturation_;
+    field::Comparison comparison_;
+    field::MatchedFilters filters_;
+    field::Diagnostics diagnostics_;
+    std::optional<field::FastLane> fast_lane_;
+
+    AxisMask excluded_axes_ = 0;
+    InstrumentSet excluded_;
+    std::array<Pending, 3> pending_{};  ///< oldest first
+    std::size_t pending_count_ = 0;
+    Eigen::Vector3d last_consensus_ = Eigen::Vector3d::Zero();
+    bool learning_begun_ = false;
+    std::uint64_t last_sequence_ = 0;
+
+    std::uint64_t frames_ = 0;  ///< compared
+    field::MatchedFilters::Ages ages_{};
+    std::array<std::uint64_t, field::ring_length> sequences_{};  ///< ring, of the frames compared
+    std::array<Accusation, field::max_instruments> accusations_{};
+    std::array<Degraded, field::max_instruments> degraded_{};
+    std::uint64_t calm_from_ = 0;      ///< frame count: nobody has been contradicted for a while
+    double disturbance_ = 0;
+    double certainty_ = 0;             ///< the largest of the newest frame
+    double largest_lasting_ = 0;
+    std::uint64_t disagreement_until_ = 0;
+    std::uint64_t disagreement_onset_ = never;
+};
+
+}  // namespace quorient::fdi

@@ -1,0 +1,75 @@
+// What the state of a field detector looks like from outside.
+
+#include "field/state.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace quorient::fdi {
+
+using field::component_count;
+
+void FieldDetector::State::report(const Measurement& measurement, Assessment& assessment) const
+{
+    assessment.threshold = 1;
+    assessment.statistic = certainty_;
+    const InstrumentSet compared = comparable();
+    assessment.outcome = !learning_begun_ || compared.size() < 2 ? Outcome::warming_up : Outcome::healthy;
+    assessment.saturated = saturation_.is_common();
+    for (std::size_t m = 0; m < array_.size(); ++m) {
+        const Accusation& accused = accusations_[m];
+        if (accused.named) {
+            assessment.outcome = Outcome::isolated;
+            assessment.isolated |= array_[m].mask;
+            assessment.onset = std::min(assessment.onset, accused.onset);
+        }
+        if (!accused.named && !(is_left_out(m) && compared.has(m))) continue;
+        assessment.provisional |= array_[m].mask;
+        assessment.provisional_from = std::min(assessment.provisional_from, accused.onset);
+    }
+    if (assessment.outcome == Outcome::healthy && assessment.provisional != 0) {
+        assessment.outcome = Outcome::suspect;
+        assessment.isolated = assessment.provisional;
+        assessment.onset = assessment.provisional_from;
+    }
+    if (assessment.outcome == Outcome::healthy && compared.size() == 2 && frames_ > 0 && frames_ <= disagreement_until_) {
+        assessment.outcome = Outcome::ambiguous;
+        assessment.onset = disagreement_onset_;
+        for (std::size_t m = 0; m < array_.size(); ++m)
+            if (compared.has(m)) assessment.add_candidate(array_[m].mask);
+    }
+    if (assessment.isolated != 0) assessment.add_candidate(assessment.isolated);
+    for (std::size_t axis = 0; axis < cluster_.size(); ++axis)
+        if (diagnostics_.accused(cluster_.instrument[axis])) assessment.diagnosis[axis] = diagnostics_.of(axis);
+    report_degraded(assessment);
+    report_residuals(measurement, assessment);
+}
+
+void FieldDetector::State::report_degraded(Assessment& assessment) const
+{
+    for (std::size_t axis = 0; axis < cluster_.size(); ++axis) {
+        const Degraded& degraded = degraded_[cluster_.instrument[axis]];
+        if (frames_ >= degraded.until || (assessment.provisional & axis_bit(axis)) != 0) continue;
+        assessment.degraded |= axis_bit(axis);
+        if (assessment.diagnosis[axis].kind == Diagnosis::none) assessment.diagnosis[axis].kind = degraded.why;
+    }
+}
+
+void FieldDetector::State::report_residuals(const Measurement& measurement, Assessment& assessment) const
+{
+    if (pending_count_ == 0) return;
+    const Pending& newest = pending_[pending_count_ - 1];
+    for (std::size_t axis = 0; axis < cluster_.size(); ++axis) {
+        const std::size_t m = cluster_.instrument[axis];
+        if (!newest.frame.present.has(m)) continue;
+        const Eigen::Vector3d along = framing_.axes().row(static_cast<Eigen::Index>(axis)).transpose();
+        const Eigen::Vector3d difference = newest.rates.col(static_cast<Eigen::Index>(m)) - newest.consensus;
+        double bound = 0;
+        for (std::size_t c = 0; c < component_count; ++c)
+            bound += std::pow(along(static_cast<Eigen::Index>(c)) * comparison_.frame_bound(c), 2);
+        assessment.residual[axis] = along.dot(difference) * measurement.interval_s;
+        assessment.bound[axis] = std::sqrt(bound) * measurement.interval_s;
+    }
+}
+
+}  // namespace quorient::fdi

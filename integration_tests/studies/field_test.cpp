@@ -1,0 +1,100 @@
+// The study `field` on simulated and recorded logs.
+
+#include "field_trial.hpp"
+
+#include <gtest/gtest.h>
+#include <cstdlib>
+#include <numbers>
+
+namespace quorient::studies {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+
+std::filesystem::path data_dir()
+{
+    const char* const given = std::getenv("QUORIENT_DATA_DIR");
+    return given != nullptr ? std::filesystem::path(given) : std::filesystem::path(QUORIENT_SOURCE_DIR) / ".." / "shared" / "data";
+}
+
+fdi::FaultMonitor monitor_on(const FieldLog& log, fdi::Mount mount = fdi::Mount::board)
+{
+    fdi::DetectorSettings settings{.method = "field"};
+    settings.mount = mount;
+    return fdi::FaultMonitor::make(settings, {}, log.cluster).value();
+}
+
+struct Recorded {
+    const char* file;
+    fdi::Mount mount = fdi::Mount::board;
+};
+
+std::ostream& operator<<(std::ostream& out, const Recorded& recorded)
+{
+    return out << recorded.file;
+}
+
+class SoundLog : public ::testing::TestWithParam<Recorded> {
+protected:
+    void SetUp() override
+    {
+        const auto file = data_dir() / GetParam().file;
+        if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there: set QUORIENT_DATA_DIR to the folder of recordings";
+        auto loaded = load_field_log(file);
+        ASSERT_TRUE(loaded) << loaded.error();
+        log = std::move(*loaded);
+    }
+
+    FieldLog log;
+};
+
+TEST_P(SoundLog, blames_no_sound_instrument_without_any_calibration)
+{
+    for (const auto& set : instrument_sets(log.instruments())) {
+        const FieldLog part = part_of(log, set);
+        const SoundRun run = play_sound(part, monitor_on(part, GetParam().mount));
+        EXPECT_EQ(run.latched, 0U) << part.name << " at " << run.first_latched_s << " s";
+        EXPECT_LE(run.provisional_s, 0.03 * part.duration_s()) << part.name;
+    }
+}
+
+TEST_P(SoundLog, names_a_bias_of_10_deg_s_soon_and_nobody_else)
+{
+    const FieldLog part = part_of(log, instrument_sets(log.instruments()).back());
+    std::mt19937_64 random(1);
+    for (int trial = 0; trial < 4; ++trial) {
+        const Injection injection = draw(part, {.name = "bias 10", .spoil = Spoil::bias, .size = 10 * degree, .kind = Diagnosis::bias}, 0, random);
+        const FaultRun run = play_fault(part, injection, 1, monitor_on(part, GetParam().mount));
+        EXPECT_EQ(run.wrong, 0U) << run.injected;
+        EXPECT_LE(run.protected_s, 1.0) << run.injected;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, SoundLog,
+                         ::testing::Values(Recorded{"field/cats_drone_healthy.csv"},
+                                           Recorded{"field/cats_rocket_healthy_long.csv"}, Recorded{"field/ardupilot_3_imus_crash.bin"},
+                                           Recorded{"field/rover_5_imus", fdi::Mount::structure}),
+                         [](const auto& tested) {
+                             std::string name = std::filesystem::path(tested.param.file).stem().string();
+                             return name;
+                         });
+
+class SoftAxis : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(SoftAxis, of_a_real_board_is_named_with_its_gain_and_no_other_instrument)
+{
+    const auto file = data_dir() / "field" / GetParam();
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there: set QUORIENT_DATA_DIR to the folder of recordings";
+    const auto log = load_field_log(file);
+    ASSERT_TRUE(log) << log.error();
+    const SoundRun run = play_sound(*log, monitor_on(*log));
+    EXPECT_EQ(run.latched, log->cluster.axes_of(0));
+    EXPECT_EQ(run.diagnosis.diagnosis[2], static_cast<std::uint8_t>(Diagnosis::gain));
+    EXPECT_NEAR(run.diagnosis.size[2], 0.455, 0.045) << "0.44 to 0.47 by the description of the data, within 0.03";
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, SoftAxis, ::testing::Values("cats_drone_soft_axis_1.csv", "cats_drone_soft_axis_2.csv"),
+                         [](const auto& tested) { return std::filesystem::path(tested.param).stem().string(); });
+
+}  // namespace
+}  // namespace quorient::studies
