@@ -3,6 +3,7 @@
 
 Build first: cmake -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ -DQUORIENT_LIBFUZZER=ON
              -DQUORIENT_SANITIZE=address,fuzzer-no-link ..., then ninja fuzz_frames fuzz_votes fuzz_imus fuzz_decode
+             fuzz_dataflash fuzz_ulog fuzz_csv fuzz_mcap fuzz_sqlite fuzz_logs fuzz_times fuzz_seeds
 """
 import argparse
 import pathlib
@@ -12,13 +13,17 @@ import sys
 import tempfile
 
 CORPUS = pathlib.Path(__file__).resolve().parent / "corpus"
-TARGETS = ("frames", "votes", "imus", "decode")
-LONGEST_RUN = {"frames": 2048, "votes": 2048, "imus": 2048, "decode": 4096}
+LOGS = ("dataflash", "ulog", "csv", "mcap", "sqlite", "logs", "times")  # their corpora are made by fuzz_seeds
+TARGETS = ("frames", "votes", "imus", "decode") + LOGS
+LONGEST_RUN = {"frames": 2048, "votes": 2048, "imus": 2048} | dict.fromkeys(("decode",) + LOGS, 4096)
 LONGEST_KEPT = {"frames": 200, "votes": 200, "imus": 1000, "decode": 4096}  # bytes; keeps the corpora small
 
 
-def unpack(target, folder):
-    """One file per line of the corpus, which is hexadecimal."""
+def unpack(build, target, folder):
+    """One file per line of the corpus, which is hexadecimal; or what the tests' writers make."""
+    if target in LOGS:
+        subprocess.run([build / "bin" / "fuzz_seeds", target, folder], check=True)
+        return
     for number, line in enumerate((CORPUS / f"{target}.txt").read_text().split()):
         (folder / f"{number:04}").write_bytes(bytes.fromhex(line))
 
@@ -68,9 +73,9 @@ def main():
     for target in arguments.targets:
         program = str(arguments.build / "bin" / f"fuzz_{target}")
         with tempfile.TemporaryDirectory() as folder:
-            unpack(target, pathlib.Path(folder))
+            unpack(arguments.build, target, pathlib.Path(folder))
             row, sound = run(program, target, arguments.seconds, folder)
-            if arguments.keep:
+            if arguments.keep and target not in LOGS:
                 keep(program, target, folder)
         print("| " + " | ".join(str(cell) for cell in row) + " |", flush=True)
         all_sound = all_sound and sound

@@ -33,12 +33,12 @@ void votes(const std::uint8_t* data, std::size_t size)
     const auto drain = [&] {
         VotedAttitude owned;
         while (voter.next_owned(owned)) continue;
-        voting::Output output;
+        VotedAttitude output;
         while (voter.next_output(output)) {
-            REQUIRE(output.attitude.output_sequence > last_output);
-            last_output = output.attitude.output_sequence;
+            REQUIRE(output.output_sequence > last_output);
+            last_output = output.output_sequence;
             double squared_norm = 0;
-            for (const double component : output.attitude.attitude) squared_norm += component * component;
+            for (const double component : output.attitude) squared_norm += component * component;
             REQUIRE(std::abs(std::sqrt(squared_norm) - 1) < 1e-6);
         }
         voting::VoterEvent event;

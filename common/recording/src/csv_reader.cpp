@@ -34,8 +34,8 @@ std::optional<tl::expected<CsvColumns, std::string>> csv_columns(std::span<const
     return columns;
 }
 
-CsvReader::CsvReader(const std::filesystem::path& file, const CsvColumns& columns, std::uint64_t header_line, std::int64_t nominal_ns)
-    : TextReader(file, header_line, columns.needed, nominal_ns), columns_(columns)
+CsvReader::CsvReader(Input input, const std::filesystem::path& file, const CsvColumns& columns, std::uint64_t header_line, std::int64_t nominal_ns)
+    : TextReader(std::move(input), file, header_line, columns.needed, nominal_ns), columns_(columns)
 {
     const auto axes = static_cast<std::uint8_t>(columns_.increment.size());
     description_.axis_count = description_.instrument_count = axes;

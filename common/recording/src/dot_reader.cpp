@@ -50,8 +50,8 @@ std::optional<tl::expected<DotColumns, std::string>> dot_columns(std::span<const
     return columns;
 }
 
-DotReader::DotReader(const std::filesystem::path& file, const DotColumns& columns, std::uint64_t header_line, std::int64_t nominal_ns)
-    : TextReader(file, header_line, columns.needed, nominal_ns), columns_(columns)
+DotReader::DotReader(Input input, const std::filesystem::path& file, const DotColumns& columns, std::uint64_t header_line, std::int64_t nominal_ns)
+    : TextReader(std::move(input), file, header_line, columns.needed, nominal_ns), columns_(columns)
 {
     description_.axis_count = 3;
     description_.instrument_count = 1;

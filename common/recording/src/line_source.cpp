@@ -5,46 +5,37 @@
 
 namespace quorient::recording {
 
-bool LineSource::refill()
-{
-    std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_), buffer_.begin() + static_cast<std::ptrdiff_t>(end_), buffer_.begin());
-    end_ -= begin_;
-    begin_ = 0;
-    stream_.read(buffer_.data() + end_, static_cast<std::streamsize>(buffer_.size() - end_));
-    const auto count = static_cast<std::size_t>(stream_.gcount());
-    end_ += count;
-    return count > 0;
-}
-
-std::optional<std::string_view> LineSource::take_line()
-{
-    const std::string_view rest(buffer_.data() + begin_, end_ - begin_);
-    const std::size_t length = rest.find('\n');
-    if (length == std::string_view::npos) return std::nullopt;
-    begin_ += length + 1;
-    return rest.substr(0, length);
-}
-
 LineSource::Outcome LineSource::next(std::string_view& line)
 {
     bool too_long = false;
-    std::optional<std::string_view> found;
-    while (!(found = take_line())) {
-        if (end_ - begin_ == buffer_.size()) {
+    std::size_t searched = 0;
+    for (;;) {
+        const Bytes bytes = input_.peek(searched + 1);
+        const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        const std::size_t length = text.find('\n', searched);
+        const bool at_end = text.size() == searched;
+        if (length == std::string_view::npos && !at_end) {
+            searched = text.size();
+            if (searched <= longest_line_) continue;
             too_long = true;
-            begin_ = end_;
+            input_.take(searched);
+            searched = 0;
+            continue;
         }
-        if (!refill()) {
-            if (begin_ == end_ && !too_long) return Outcome::end;
-            found = std::string_view(buffer_.data() + begin_, end_ - begin_);
-            begin_ = end_;
-            break;
-        }
+        if (at_end && searched == 0 && !too_long) return Outcome::end;
+        line = text.substr(0, std::min(length, text.size()));
+        input_.take(std::min(line.size() + 1, text.size()));
+        break;
     }
     ++line_number_;
-    line = *found;
     if (line.ends_with('\r')) line.remove_suffix(1);
-    return too_long || line.size() > longest_line ? Outcome::too_long : Outcome::line;
+    return too_long || line.size() > longest_line_ ? Outcome::too_long : Outcome::line;
+}
+
+void LineSource::rewind()
+{
+    input_.rewind();
+    line_number_ = 0;
 }
 
 std::string_view trimmed(std::string_view text)

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <array>
+#include "bytes/input.hpp"
+
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,12 +10,11 @@
 
 namespace quorient::recording {
 
-/// The lines of a text file through one fixed buffer. Line ends are \n or \r\n.
+/// The lines of a text through one buffer. Line ends are \n or \r\n.
 class LineSource {
 public:
-    static constexpr std::size_t longest_line = 4096;
-
-    explicit LineSource(const std::filesystem::path& file) : stream_(file, std::ios::binary) {}
+    /// @param longest_line  bytes; exports with hundreds of columns have long ones
+    explicit LineSource(Input input, std::size_t longest_line = 1U << 16U) : input_(std::move(input)), longest_line_(longest_line) {}
 
     enum class Outcome { line, too_long, end };
 
@@ -26,14 +24,13 @@ public:
     /// 1-based, of the line given out last.
     std::uint64_t line_number() const { return line_number_; }
 
-private:
-    bool refill();
-    std::optional<std::string_view> take_line();
+    void rewind();
+    double progress() const { return input_.progress(); }
+    const std::string& trouble() const { return input_.trouble(); }
 
-    std::ifstream stream_;
-    std::array<char, longest_line + 2> buffer_{};
-    std::size_t begin_ = 0;  // start of what is not given out yet
-    std::size_t end_ = 0;
+private:
+    Input input_;
+    std::size_t longest_line_;
     std::uint64_t line_number_ = 0;
 };
 

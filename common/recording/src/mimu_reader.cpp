@@ -7,7 +7,6 @@
 namespace quorient::recording {
 namespace {
 
-constexpr std::size_t buffer_size = 1U << 16U;
 constexpr double rate_unit_rad_s = degree / 16.4;            // per LSB
 constexpr double acceleration_unit_m_s2 = 9.80665 / 2048.0;  // per LSB
 constexpr double range_rad_s = 2000.0 * degree;              // the data sheet's; the codes end at 1998 deg/s
@@ -55,39 +54,34 @@ std::int64_t nanoseconds(std::int64_t ticks)
 
 }  // namespace
 
-MimuReader::MimuReader(const std::filesystem::path& file)
-    : stream_(file, std::ios::binary), file_(file.filename().string()), buffer_(buffer_size), clock_(nanoseconds(mimu::nominal_ticks))
+MimuReader::MimuReader(Input input, std::string file)
+    : input_(std::move(input)), file_(std::move(file)), clock_(nanoseconds(mimu::nominal_ticks))
 {
     description_ = board();
-    if (fill() && std::equal(mimu::acknowledgement.begin(), mimu::acknowledgement.end(), buffer_.begin())) {
-        begin_ = mimu::acknowledgement.size();
-        offset_ = begin_;
-    }
+    const auto beginning = input_.peek(mimu::acknowledgement.size());
+    if (beginning.size() >= mimu::acknowledgement.size() &&
+        std::equal(mimu::acknowledgement.begin(), mimu::acknowledgement.end(), beginning.begin()))
+        input_.take(mimu::acknowledgement.size());
 }
 
-/// Makes sure that a whole packet lies in the buffer at begin_; false at the end of the file.
+/// Looks at the bytes of a packet; false where the log ends before.
 bool MimuReader::fill()
 {
-    if (end_ - begin_ >= mimu::packet_size) return true;
-    std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_), buffer_.begin() + static_cast<std::ptrdiff_t>(end_), buffer_.begin());
-    end_ -= begin_;
-    begin_ = 0;
-    stream_.read(reinterpret_cast<char*>(buffer_.data() + end_), static_cast<std::streamsize>(buffer_.size() - end_));
-    end_ += static_cast<std::size_t>(stream_.gcount());
-    return end_ >= mimu::packet_size;
+    const auto bytes = input_.peek(mimu::packet_size);
+    packet_ = bytes.first(std::min(bytes.size(), mimu::packet_size));
+    return packet_.size() == mimu::packet_size;
 }
 
 ReadOutcome MimuReader::next(RecordedFrame& frame)
 {
     if (!fill()) return cut_off();
-    record_ = offset_;
-    if (!mimu::intact(packet())) return resynchronise();
+    record_ = input_.offset();
+    if (!mimu::intact(packet_)) return resynchronise();
 
     ++statistics_.records;
     const bool accepted = in_time();
     if (accepted) decode(frame);
-    begin_ += mimu::packet_size;
-    offset_ += mimu::packet_size;
+    input_.take(mimu::packet_size);
     if (!accepted) return ReadOutcome::rejected;
     ++statistics_.frames;
     return ReadOutcome::frame;
@@ -95,28 +89,30 @@ ReadOutcome MimuReader::next(RecordedFrame& frame)
 
 ReadOutcome MimuReader::cut_off()
 {
-    if (end_ == begin_) return ReadOutcome::end;
-    record_ = offset_;
-    statistics_.truncated_bytes = end_ - begin_;
-    begin_ = end_ = 0;
+    if (ended_) return ReadOutcome::end;
+    ended_ = true;
+    record_ = input_.offset();
+    statistics_.truncated_bytes = packet_.size();
+    input_.take(packet_.size());
+    if (!input_.trouble().empty()) return refuse(input_.trouble());
+    if (statistics_.truncated_bytes == 0) return ReadOutcome::end;
     return refuse(fmt::format("the log ends {} bytes into a packet of {}", statistics_.truncated_bytes, mimu::packet_size));
 }
 
 /// Passes over a broken packet to the next intact one.
 ReadOutcome MimuReader::resynchronise()
 {
-    const bool framed = mimu::starts_like_packet(packet());
+    const bool framed = mimu::starts_like_packet(packet_);
     ++(framed ? statistics_.checksum_failures : statistics_.malformed);
     ++statistics_.records;
-    const auto why = framed ? fmt::format("checksum is 0x{:04X}, the packet says 0x{:04X}", mimu::checksum(packet()),
-                                          mimu::u16(packet(), mimu::packet_size - 2))
-                            : fmt::format("no packet starts here (0x{:02X} … 0x{:02X})", packet()[0], packet()[3]);
+    const auto why = framed ? fmt::format("checksum is 0x{:04X}, the packet says 0x{:04X}", mimu::checksum(packet_),
+                                          mimu::u16(packet_, mimu::packet_size - 2))
+                            : fmt::format("no packet starts here (0x{:02X} … 0x{:02X})", packet_[0], packet_[3]);
     std::uint64_t skipped = 0;
     do {
-        ++begin_;
-        ++offset_;
+        input_.take(1);
         ++skipped;
-    } while (fill() && !mimu::intact(packet()));
+    } while (fill() && !mimu::intact(packet_));
     statistics_.skipped_bytes += skipped;
     ++refused_;
     return refuse(fmt::format("{}; {} bytes passed over", why, skipped));
@@ -131,8 +127,8 @@ ReadOutcome MimuReader::refuse(std::string_view why)
 /// Judges number and clock of the packet in hand against those of the one before, and adopts them.
 bool MimuReader::in_time()
 {
-    const std::uint16_t number = mimu::number(packet());
-    const std::uint32_t ticks = mimu::ticks(packet());
+    const std::uint16_t number = mimu::number(packet_);
+    const std::uint32_t ticks = mimu::ticks(packet_);
     const auto numbers = static_cast<std::uint16_t>(number - number_);
     const auto expected_ticks = static_cast<std::uint32_t>(numbers) * mimu::nominal_ticks;
     const auto excess_ticks =
@@ -179,8 +175,8 @@ void MimuReader::decode(RecordedFrame& frame)
     frame.truth.reset();
     for (std::size_t imu = 0; imu < mimu::imus; ++imu) {
         for (std::size_t k = 0; k < 3; ++k) {
-            frame.increment[3 * imu + k] = mimu::rate(packet(), imu, k) * rate_unit_rad_s * interval_s_;
-            frame.acceleration_m_s2[3 * imu + k] = mimu::acceleration(packet(), imu, k) * acceleration_unit_m_s2;
+            frame.increment[3 * imu + k] = mimu::rate(packet_, imu, k) * rate_unit_rad_s * interval_s_;
+            frame.acceleration_m_s2[3 * imu + k] = mimu::acceleration(packet_, imu, k) * acceleration_unit_m_s2;
         }
     }
     last_frame_ns_ = frame.time_ns;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bytes/input.hpp"
 #include "line_source.hpp"
 #include "log_clock.hpp"
 #include "mimu_packet.hpp"
@@ -7,7 +8,6 @@
 #include "quorient/recording/reader.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <numbers>
 #include <span>
 #include <string_view>
@@ -28,27 +28,25 @@ void set_name(Name<Size>& name, std::string_view text)
 /// The MIMU4444 binary. Give it only a file in which intact packets were found.
 class MimuReader final : public Reader {
 public:
-    explicit MimuReader(const std::filesystem::path& file);
+    MimuReader(Input input, std::string file);
     ReadOutcome next(RecordedFrame& frame) override;
+    double progress() const { return input_.progress(); }
 
 private:
     bool fill();
-    mimu::Bytes packet() const { return std::span(buffer_).subspan(begin_, mimu::packet_size); }
     ReadOutcome cut_off();
     ReadOutcome resynchronise();
     ReadOutcome refuse(std::string_view why);
     bool in_time();
     void decode(RecordedFrame& frame);
 
-    std::ifstream stream_;
+    Input input_;
     std::string file_;
-    std::vector<std::uint8_t> buffer_;
-    std::size_t begin_ = 0;  // start of the packet expected next
-    std::size_t end_ = 0;
-    std::uint64_t offset_ = 0;  // place of buffer_[begin_] in the file
+    mimu::Bytes packet_;        // after fill()
     std::uint64_t record_ = 0;  // offset of the record in hand
     LogClock clock_;
     bool started_ = false;
+    bool ended_ = false;
     std::uint16_t number_ = 0;  // number of the previous record
     std::uint32_t ticks_ = 0;
     std::int64_t last_frame_ns_ = 0;
@@ -64,7 +62,7 @@ public:
 protected:
     using Cells = std::span<const std::string_view>;
 
-    TextReader(const std::filesystem::path& file, std::uint64_t header_line, std::size_t needed_cells, std::int64_t nominal_ns);
+    TextReader(Input input, const std::filesystem::path& file, std::uint64_t header_line, std::size_t needed_cells, std::int64_t nominal_ns);
 
     /// One record; nothing = it was taken in and gives no frame.
     virtual std::optional<ReadOutcome> read(Cells cells, RecordedFrame& frame) = 0;
@@ -83,9 +81,12 @@ protected:
     std::optional<std::int64_t> stamp_ns_;  // time stamp of the previous record
 
 private:
+    ReadOutcome end_of_text();
+
     LineSource lines_;
     std::string file_;
     std::size_t needed_cells_;
+    bool ended_ = false;
     std::int64_t last_frame_ns_ = 0;
 };
 
@@ -102,7 +103,7 @@ struct DotColumns {
 /// One Xsens DOT's CSV export: a triad of gyros (deg/s) and accelerometers (m/s^2).
 class DotReader final : public TextReader {
 public:
-    DotReader(const std::filesystem::path& file, const DotColumns& columns, std::uint64_t header_line, std::int64_t nominal_ns);
+    DotReader(Input input, const std::filesystem::path& file, const DotColumns& columns, std::uint64_t header_line, std::int64_t nominal_ns);
 
 private:
     std::optional<ReadOutcome> read(Cells cells, RecordedFrame& frame) override;
@@ -121,7 +122,7 @@ struct CsvColumns {
 /// Plain CSV: increments of any cluster, with or without the truth.
 class CsvReader final : public TextReader {
 public:
-    CsvReader(const std::filesystem::path& file, const CsvColumns& columns, std::uint64_t header_line, std::int64_t nominal_ns);
+    CsvReader(Input input, const std::filesystem::path& file, const CsvColumns& columns, std::uint64_t header_line, std::int64_t nominal_ns);
 
 private:
     std::optional<ReadOutcome> read(Cells cells, RecordedFrame& frame) override;

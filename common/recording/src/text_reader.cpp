@@ -5,9 +5,15 @@
 #include <cmath>
 
 namespace quorient::recording {
+namespace {
 
-TextReader::TextReader(const std::filesystem::path& file, std::uint64_t header_line, std::size_t needed_cells, std::int64_t nominal_ns)
-    : clock_(nominal_ns), lines_(file), file_(file.filename().string()), needed_cells_(needed_cells)
+constexpr std::size_t longest_line = 4096;
+
+}  // namespace
+
+TextReader::TextReader(Input input, const std::filesystem::path& file, std::uint64_t header_line, std::size_t needed_cells,
+                       std::int64_t nominal_ns)
+    : clock_(nominal_ns), lines_(std::move(input), longest_line), file_(file.filename().string()), needed_cells_(needed_cells)
 {
     std::string_view line;
     while (lines_.line_number() < header_line && lines_.next(line) != LineSource::Outcome::end) {
@@ -21,7 +27,7 @@ ReadOutcome TextReader::next(RecordedFrame& frame)
     while (true) {
         std::string_view line;
         const auto found = lines_.next(line);
-        if (found == LineSource::Outcome::end) return ReadOutcome::end;
+        if (found == LineSource::Outcome::end) return end_of_text();
         if (found == LineSource::Outcome::line && (trimmed(line).empty() || trimmed(line).starts_with('#'))) continue;
 
         ++statistics_.records;
@@ -34,6 +40,14 @@ ReadOutcome TextReader::next(RecordedFrame& frame)
         const auto outcome = read(std::span(cells).first(count), frame);
         if (outcome) return *outcome;
     }
+}
+
+ReadOutcome TextReader::end_of_text()
+{
+    if (ended_ || lines_.trouble().empty()) return ReadOutcome::end;
+    ended_ = true;
+    ++statistics_.records;
+    return refuse(statistics_.malformed, lines_.trouble());
 }
 
 ReadOutcome TextReader::refuse(std::uint64_t& reason, std::string_view why)

@@ -75,7 +75,8 @@ protected:
     std::string problem_;
 };
 
-/// Opens a log by its content: MIMU4444 binary, Xsens DOT CSV, or plain CSV as `quorient simulate` writes it.
+/// Opens a log by its content: MIMU4444 binary, Xsens DOT CSV, plain CSV as `quorient simulate` writes it; or any log of instruments
+/// (instrument_log.hpp), which are put on common intervals.
 /// @returns an error with file and position if nothing in the log's beginning can be read as any of them.
 tl::expected<std::unique_ptr<Reader>, std::string> open_log(const std::filesystem::path& file);
 

@@ -1,0 +1,170 @@
+#include "csv_log.hpp"
+
+#include "readers.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+namespace quorient::recording::csv {
+
+CsvLog::CsvLog(Input input, std::string name, const LogOptions& options)
+    : lines_(std::move(input)), name_(std::move(name)), options_(options)
+{
+    format_ = "CSV";
+}
+
+tl::expected<std::unique_ptr<InstrumentLog>, std::string> CsvLog::open(Input input, std::string name, const LogOptions& options)
+{
+    std::unique_ptr<CsvLog> log(new CsvLog(std::move(input), std::move(name), options));
+    for (const auto step : {&CsvLog::find_header, &CsvLog::understand})
+        if (const auto problem = (log.get()->*step)()) return tl::unexpected(fmt::format("{}:{}: {}", log->name_, log->header_line_, *problem));
+    log->to_first_row();
+    log->statistics_ = {};
+    return log;
+}
+
+void CsvLog::to_first_row()
+{
+    lines_.rewind();
+    std::string_view line;
+    while (lines_.line_number() < header_line_ && lines_.next(line) != LineSource::Outcome::end) {
+    }
+    cells_.clear();
+    gyros_.clear();
+    instruments_.clear();
+    next_gyro_ = layout_.gyros.size();
+    ended_ = false;
+}
+
+/// Takes the next line that holds a row. @returns false at the end.
+bool CsvLog::next_row()
+{
+    for (;;) {
+        std::string_view line;
+        const auto outcome = lines_.next(line);
+        if (outcome == LineSource::Outcome::end) return false;
+        if (outcome == LineSource::Outcome::too_long) line = {};
+        const std::string_view text = trimmed(line);
+        if (outcome == LineSource::Outcome::line && (text.empty() || text.front() == '#' || text.front() == '%')) continue;
+        split_cells(line, dialect_.delimiter, cells_);
+        next_gyro_ = 0;
+        return true;
+    }
+}
+
+ReadOutcome CsvLog::next(InstrumentSample& sample)
+{
+    for (;;) {
+        while (next_gyro_ >= layout_.gyros.size()) {
+            if (next_row()) {
+                if (cells_.size() >= layout_.needed) break;
+                ++statistics_.records;
+                ++statistics_.malformed;
+                next_gyro_ = layout_.gyros.size();
+                return refuse(fmt::format("{} cells, at least {} are needed", cells_.size(), layout_.needed));
+            }
+            if (ended_ || lines_.trouble().empty()) return ReadOutcome::end;
+            ended_ = true;
+            return refuse(lines_.trouble());
+        }
+        if (const auto outcome = read(next_gyro_++, sample)) return *outcome;
+    }
+}
+
+ReadOutcome CsvLog::refuse(std::string_view why)
+{
+    problem_ = fmt::format("{}:{}: {}", name_, lines_.line_number(), why);
+    return ReadOutcome::rejected;
+}
+
+std::optional<std::int64_t> CsvLog::time_of(const GyroColumns& gyro) const
+{
+    auto time_ns = cell_time_ns(cell(gyro.time), std::max<std::int64_t>(1, gyro.time_unit_ns), dialect_.decimal_comma);
+    if (!time_ns || !gyro.time_fraction) return time_ns;
+    const auto fraction_ns = cell_time_ns(cell(*gyro.time_fraction), 1, dialect_.decimal_comma);
+    if (!fraction_ns) return std::nullopt;
+    return *time_ns + std::clamp<std::int64_t>(*fraction_ns, 0, 1'000'000'000);
+}
+
+/// One instrument's part of a row; nothing = it has none in this row.
+std::optional<ReadOutcome> CsvLog::read(std::size_t number, InstrumentSample& sample)
+{
+    const GyroColumns& gyro = layout_.gyros[number];
+    std::array<double, 3> raw{};
+    sample = {};
+    const bool empty = std::all_of(gyro.value.begin(), gyro.value.end(), [&](std::size_t place) { return cell(place).empty(); });
+    if (empty) return std::nullopt;
+    ++statistics_.records;
+    if (const auto refused = read_values(gyro, sample, raw)) return refused;
+    const auto time_ns = time_of(gyro);
+    if (!time_ns) {
+        ++statistics_.malformed;
+        return refuse(fmt::format("'{}' is not a time", cell(gyro.time).substr(0, 40)));
+    }
+    Gyro* const state = gyro_state(number);
+    if (state == nullptr) {
+        ++statistics_.malformed;
+        return refuse(fmt::format("more than {} instruments", max_instruments));
+    }
+    sample.instrument = state->place;
+    constexpr std::int64_t wrap_ns = 4'294'967'296'000;  // a 32-bit count of microseconds
+    if (gyro.time_wraps && state->stamp_ns && *time_ns < *state->stamp_ns - wrap_ns / 2) state->wraps_ns += wrap_ns;
+    const std::int64_t step_ns = state->stamp_ns ? *time_ns - *state->stamp_ns : 0;
+    state->stamp_ns = *time_ns;
+    sample.time_ns = *time_ns + state->wraps_ns;
+    sample.position = lines_.line_number();
+    if (gyro.increments) {
+        const double stated_s = gyro.interval ? sample.covered_s : 0;
+        const double covered_s = stated_s > 0 ? stated_s : static_cast<double>(step_ns) * 1e-9;
+        if (!(covered_s > 0) || !std::isfinite(covered_s)) return std::nullopt;  // the first increment of a log stands for an interval that nothing states
+        sample.covered_s = covered_s;
+        for (std::size_t k = 0; k < 3; ++k) sample.rate_rad_s[k] = raw[k] / covered_s;
+    }
+    ++statistics_.frames;
+    return ReadOutcome::frame;
+}
+
+/// @param raw  rates, or increments, in rad
+std::optional<ReadOutcome> CsvLog::read_values(const GyroColumns& gyro, InstrumentSample& sample, std::array<double, 3>& raw)
+{
+    const auto read = [&](std::size_t place, double factor, double& value) {
+        const auto number = cell_number(cell(place), dialect_.decimal_comma);
+        if (number) value = *number * factor;
+        return number.has_value();
+    };
+    std::optional<std::size_t> bad;
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (!read(gyro.value[k], gyro.factor[k], raw[k])) bad = gyro.value[k];
+        sample.rate_rad_s[k] = raw[k];
+        if (gyro.acceleration && gyro.acceleration_factor > 0 && (*gyro.acceleration)[k] < cells_.size())
+            read((*gyro.acceleration)[k], gyro.acceleration_factor, sample.acceleration_m_s2[k]);
+    }
+    if (gyro.interval && !read(*gyro.interval, gyro.interval_factor, sample.covered_s)) bad = *gyro.interval;
+    if (gyro.temperature) read(*gyro.temperature, 1.0, sample.temperature_c);
+    double counter = not_logged;
+    if (gyro.counter && read(*gyro.counter, 1.0, counter) && counter >= 0 && counter < 9e15)
+        sample.counter = static_cast<std::uint64_t>(counter);
+    if (!bad) return std::nullopt;
+    ++statistics_.malformed;
+    return refuse(fmt::format("'{}' is not a number", cell(*bad).substr(0, 40)));
+}
+
+CsvLog::Gyro* CsvLog::gyro_state(std::size_t number)
+{
+    const std::string_view identity = layout_.identity ? cell(*layout_.identity) : std::string_view{};
+    const std::string_view key = layout_.identity ? identity.substr(0, 64) : std::string_view(layout_.gyros[number].name);
+    const auto found = gyros_.find(key);
+    if (found != gyros_.end()) return found->second.known ? &found->second : nullptr;
+    if (gyros_.size() >= max_instruments) return nullptr;
+    Instrument made;
+    const bool only_digits = key.find_first_not_of("0123456789") == std::string_view::npos;
+    made.name = layout_.identity && only_digits ? fmt::format("{}{}", layout_.identity_name, key) : std::string(key);
+    if (made.name.empty()) made.name = name_.substr(0, name_.find('.'));
+    made.source = name_;
+    made.stamps = layout_.gyros[number].time_wraps ? StampKind::sampling : StampKind::arrival;
+    const auto place = place_of(made);
+    return &gyros_.emplace(std::string(key), Gyro{place.value_or(0), {}, 0, place.has_value()}).first->second;
+}
+
+}  // namespace quorient::recording::csv
