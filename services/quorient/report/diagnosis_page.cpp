@@ -1,0 +1,147 @@
+#include "report/diagnosis_page.hpp"
+
+#include "cli/svg_plot.hpp"
+#include "report/diagnosis_text.hpp"
+#include "report/time_strip.hpp"
+
+#include "quorient/diagnosis/words.hpp"
+
+#include <fmt/format.h>
+#include <cmath>
+
+namespace quorient::cli {
+namespace {
+
+using diagnosis::Certainty;
+using diagnosis::Report;
+
+constexpr std::string_view style =
+    "body{font-family:sans-serif;max-width:60em;margin:1em auto;padding:0 .8em;color:#111;background:#fff;line-height:1.35}"
+    "h1{font-size:1.25em;padding:.5em .7em;border-left:.5em solid #009e73;background:#f3f3f3}h1.isolated{border-color:#d00000}"
+    "h1.detected{border-color:#e69f00}h2{font-size:1.05em;margin:1.4em 0 .3em}svg{width:100%;height:auto;display:block;font-size:11px;"
+    "font-family:sans-serif;break-inside:avoid}svg .g{stroke:#ddd;fill:none}svg .t{font-weight:bold}svg .l{fill:none;stroke-width:1.2}"
+    "svg .b{fill-opacity:.45;stroke-width:.6}svg .o{paint-order:stroke;stroke:#fff;stroke-width:3px}.keys span{white-space:nowrap;margin-right:1em}"
+    ".keys i{display:inline-block;width:1.2em;height:.6em;margin-right:.3em}ul{padding-left:1.2em;margin:.3em 0}.wide{overflow-x:auto}"
+    "pre{font-size:.8em;white-space:pre-wrap;overflow-wrap:anywhere}@media print{body{margin:0;max-width:none}h1{background:none}}";
+
+/// The compared instruments, by their places in the report.
+std::vector<std::size_t> compared_of(const Report& report)
+{
+    std::vector<std::size_t> compared;
+    for (std::size_t m = 0; m < report.instruments.size(); ++m)
+        if (report.instruments[m].compared) compared.push_back(m);
+    return compared;
+}
+
+class Page {
+public:
+    explicit Page(const Report& report)
+        : report_(report), compared_(compared_of(report)),
+          span_{report.plot.first_s, report.plot.first_s + std::max(1e-3, report.plot.bin_s * static_cast<double>(report.plot.bins.size()))}
+    {
+    }
+
+    std::string text() const
+    {
+        std::string page = "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><meta name='viewport' content='width=device-width, initial-scale=1'>\n";
+        page += fmt::format("<title>{}</title>\n<style>{}</style></head><body>\n", html_escaped(report_.log), style);
+        const std::string_view state = report_.findings.empty() ? "" : name_of(report_.findings.front().certainty);
+        page += fmt::format("<h1 class='{}'>{}</h1>\n<p>{}: {:.1f} s</p>\n", state, html_escaped(report_.sentence), html_escaped(report_.log), report_.duration_s);
+        page += findings();
+        if (!report_.plot.bins.empty()) page += diagrams();
+        page += fmt::format("<h2>All figures</h2>\n<pre>{}</pre>\n", html_escaped(diagnosis_text(report_)));
+        return page + "</body></html>\n";
+    }
+
+private:
+    std::string findings() const
+    {
+        if (report_.findings.empty()) return "<h2>Findings</h2>\n<p>None.</p>\n";
+        std::string text = "<h2>Findings</h2>\n<ul>\n";
+        for (const auto& finding : report_.findings)
+            text += fmt::format("<li><b>{}</b>: {} {} {}</li>\n", name_of(finding.certainty), html_escaped(place_of(finding, report_)),
+                                html_escaped(words_of(finding)), time_of(finding, report_));
+        return text + "</ul>\n";
+    }
+
+    std::string diagrams() const
+    {
+        std::string text = "<h2>Over time</h2>\n<p class='keys'>";
+        for (std::size_t m = 0; m < compared_.size(); ++m)
+            text += fmt::format("<span><i style='background:{}'></i>{}</span>", colour(m), html_escaped(report_.instruments[compared_[m]].name));
+        text += "</p>\n";
+        if (!report_.findings.empty()) text += bar_strip("Findings", span_, bars());
+        for (int axis = 0; axis < 3; ++axis) text += band_strip(fmt::format("Rate about {}, all gyros", "xyz"[axis]), "deg/s", span_, rates(axis));
+        for (std::size_t m = 0; m < compared_.size(); ++m)
+            text += band_strip(fmt::format("{}: deviation from the others, and what it stays below while sound (dashed)", report_.instruments[compared_[m]].name),
+                               "deg/s", span_, residuals(m));
+        if (report_.attitude)
+            text += band_strip(fmt::format("Attitude with {0} among the others, and by {0} alone (dashed), against that without it",
+                                           report_.instruments[report_.attitude->left_out].name),
+                               "deg", span_, attitudes());
+        return text;
+    }
+
+    std::vector<Bar> bars() const
+    {
+        std::vector<Bar> found;
+        for (const auto& finding : report_.findings) {
+            const bool certain = finding.certainty == Certainty::isolated;
+            const bool detected = finding.certainty == Certainty::detected;
+            found.push_back({fmt::format("{} {}", place_of(finding, report_), name_of(finding.kind)), certain ? "#d00000" : detected ? "#e69f00" : "#bbbbbb",
+                             finding.from_s, finding.to_s.value_or(span_.to_s)});
+        }
+        return found;
+    }
+
+    /// value(bin, instrument): least and largest.
+    template <class Value>
+    Band band_of(std::string ink, bool dashed, std::size_t m, const Value& value) const
+    {
+        Band band{std::move(ink), {}, dashed, std::max(2.5 * report_.plot.bin_s, 0.25)};
+        for (std::size_t i = 0; i < report_.plot.bins.size(); ++i) {
+            const diagnosis::PlotBin& bin = report_.plot.bins[i];
+            if (!bin.filled || bin.of[m].frames == 0) continue;
+            const auto [least, largest] = value(bin);
+            band.points.push_back({span_.from_s + (static_cast<double>(i) + 0.5) * report_.plot.bin_s, least, largest});
+        }
+        return band;
+    }
+
+    std::vector<Band> rates(int axis) const
+    {
+        std::vector<Band> bands;
+        for (std::size_t m = 0; m < compared_.size(); ++m)
+            bands.push_back(band_of(colour(m), false, m, [&](const diagnosis::PlotBin& bin) {
+                return std::pair<double, double>(bin.of[m].least_deg_s(axis), bin.of[m].largest_deg_s(axis));
+            }));
+        return bands;
+    }
+
+    std::vector<Band> residuals(std::size_t m) const
+    {
+        const auto residual = [&](const diagnosis::PlotBin& bin) { return std::pair<double, double>(bin.of[m].residual_deg_s, bin.of[m].residual_deg_s); };
+        const auto bound = [&](const diagnosis::PlotBin& bin) { return std::pair<double, double>(bin.of[m].bound_deg_s, bin.of[m].bound_deg_s); };
+        return {band_of(colour(m), false, m, residual), band_of("#111111", true, m, bound)};
+    }
+
+    std::vector<Band> attitudes() const
+    {
+        const auto with = [](const diagnosis::PlotBin& bin) { return std::pair<double, double>(bin.with_deg, bin.with_deg); };
+        const auto alone = [](const diagnosis::PlotBin& bin) { return std::pair<double, double>(bin.alone_deg, bin.alone_deg); };
+        return {band_of("#0072b2", false, 0, with), band_of("#d00000", true, 0, alone)};
+    }
+
+    const Report& report_;
+    std::vector<std::size_t> compared_;
+    TimeSpan span_;
+};
+
+}  // namespace
+
+std::string diagnosis_page(const Report& report)
+{
+    return Page(report).text();
+}
+
+}  // namespace quorient::cli
