@@ -1,13 +1,11 @@
 #include "judges.hpp"
-#include "quorient/fdi/noise.hpp"
+#include "quorient/design/fault_size.hpp"
 #include "quorient/geometry/layouts.hpp"
 #include "quorient/geometry/parity_space.hpp"
 #include "study.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <boost/math/distributions/non_central_chi_squared.hpp>
-#include <boost/math/tools/roots.hpp>
 #include <cmath>
 #include <iterator>
 #include <optional>
@@ -65,20 +63,9 @@ double worst_visibility(const geometry::SensorCluster& cluster)
     return space.projector().diagonal().minCoeff();
 }
 
-/// P(S0 > limit) for a fault of this size: S0 is chi-square of q degrees, shifted by f^2 P_ii.
-double detection_probability(unsigned redundancy, double visibility, double size)
-{
-    const boost::math::non_central_chi_squared shifted(redundancy, visibility * size * size);
-    return boost::math::cdf(boost::math::complement(shifted, fdi::chi_square_quantile(redundancy, false_alarm)));
-}
-
 double size_for_detection(const geometry::SensorCluster& cluster)
 {
-    const auto redundancy = static_cast<unsigned>(cluster.size() - 3);
-    const double visibility = worst_visibility(cluster);
-    const auto excess = [&](double size) { return detection_probability(redundancy, visibility, size) - detection; };
-    const auto [low, high] = boost::math::tools::bisect(excess, 1.0, 100.0, boost::math::tools::eps_tolerance<double>(40));
-    return (low + high) / 2;
+    return design::detected_axis(geometry::ParitySpace(cluster.axes), {false_alarm, detection});
 }
 
 Scene scene_of(const geometry::SensorCluster& cluster, std::size_t faults, double size, const JudgeFactory& judge)
@@ -153,7 +140,7 @@ cli::Chart detection_chart()
         cli::Series series{row.layout, {}, cli::colour(chart.series.size()), true};
         for (double size = 0; size <= 20; size += 0.25)
             series.points.emplace_back(
-                size, 100 * detection_probability(static_cast<unsigned>(cluster.size() - 3), worst_visibility(cluster), size));
+                size, 100 * design::detection_probability(static_cast<unsigned>(cluster.size() - 3), worst_visibility(cluster), size, false_alarm));
         chart.series.push_back(std::move(series));
     }
     return chart;

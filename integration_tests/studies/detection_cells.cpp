@@ -1,7 +1,7 @@
 #include "detection_cells.hpp"
 
-#include "parallel.hpp"
-#include "px4_rule.hpp"
+#include "cli/parallel.hpp"
+#include "quorient/diagnosis/px4_rule.hpp"
 #include "arrays/accumulating_detector.hpp"
 #include "quorient/messages/meaning.hpp"
 
@@ -14,6 +14,8 @@
 #include <random>
 
 namespace quorient::studies {
+
+using diagnosis::Px4Rule;
 
 namespace {
 
@@ -132,7 +134,7 @@ std::vector<CellResult> play_cells(const std::vector<RecordedArray>& arrays, con
     std::vector<std::vector<std::size_t>> onsets;
     for (const Cell& cell : cells) onsets.push_back(possible_onsets(arrays[cell.array], cell.moving));
     std::vector<std::vector<TrialResult>> results(cells.size(), std::vector<TrialResult>(settings.trials));
-    for_each(cells.size() * settings.trials, settings, on_progress, [&](std::size_t i) {
+    cli::for_each(cells.size() * settings.trials, settings.threads, on_progress, [&](std::size_t i) {
         const std::size_t number = i / settings.trials;
         const std::size_t trial = i % settings.trials;
         const Cell& cell = cells[number];

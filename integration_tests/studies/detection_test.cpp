@@ -1,5 +1,5 @@
 #include "detection_cells.hpp"
-#include "px4_rule.hpp"
+#include "quorient/diagnosis/px4_rule.hpp"
 #include "study.hpp"
 #include "quorient/geometry/layouts.hpp"
 
@@ -12,6 +12,8 @@
 #include <random>
 
 namespace quorient::studies {
+
+using diagnosis::Px4Rule;
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;

@@ -1,6 +1,6 @@
 #include "detection_trial.hpp"
 
-#include "px4_rule.hpp"
+#include "quorient/diagnosis/px4_rule.hpp"
 #include "quorient/attitude/integrator.hpp"
 #include "quorient/messages/meaning.hpp"
 #include "quorient/rotation/quaternion.hpp"
@@ -12,6 +12,8 @@
 #include <vector>
 
 namespace quorient::studies {
+
+using diagnosis::Px4Rule;
 
 namespace {
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "quorient/fdi/sensor_class.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"
 
 #include <cstdint>
@@ -73,6 +74,8 @@ struct RunSettings {
     std::uint64_t seed = 1;
     unsigned threads = 0;                       ///< 0 = one per core
     std::vector<std::filesystem::path> logs{};  ///< recordings, for the studies that play some
+    std::vector<std::filesystem::path> faulty_logs{};  ///< study field: with a real fault
+    fdi::Mount mount = fdi::Mount::board;              ///< study field
 };
 
 /// Called after each block with the blocks done and their number; from any thread, one call at a time.

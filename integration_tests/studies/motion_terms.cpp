@@ -1,6 +1,6 @@
 #include "detection_cells.hpp"
 #include "motion_terms_fit.hpp"
-#include "parallel.hpp"
+#include "cli/parallel.hpp"
 #include "study.hpp"
 #include "cli/program.hpp"
 
@@ -48,7 +48,7 @@ std::vector<Fitted> all_fits(const std::vector<Recording>& recordings, const Run
         fits.push_back({&recording, recording.name + ", one half", {halves[0]}, {halves[1]}, {}});
         fits.push_back({&recording, recording.name + ", other half", {halves[1]}, {halves[0]}, {}});
     }
-    for_each(fits.size(), settings, on_progress, [&](std::size_t i) {
+    cli::for_each(fits.size(), settings.threads, on_progress, [&](std::size_t i) {
         fits[i].noise = tightest_silent(fits[i].recording->samples, fits[i].seen, fdi::usual_motion_noise(fits[i].seen.front().cluster));
     });
     return fits;

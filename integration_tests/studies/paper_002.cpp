@@ -68,6 +68,7 @@ fdi::DetectorSettings with_tolerance(const char* name, double tolerance)
     settings.method = name;
     settings.tolerance = tolerance;
     settings.max_faults = 2;
+    settings.bare = true;  // as published
     return settings;
 }
 

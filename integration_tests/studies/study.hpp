@@ -44,6 +44,13 @@ Report detection_seeds(const RunSettings& settings, const OnProgress& on_progres
 /// The terms of the motion noise that each recording shows by itself, beside the usual ones, and what becomes of the other one with them.
 Report motion_terms(const RunSettings& settings, const OnProgress& on_progress);
 
+/// The field detector on logs of any arrays of triads (settings.logs: sound; settings.faulty_logs), uncalibrated: as they are, and with faults
+/// added to the sound ones, beside PX4's rule.
+Report field(const RunSettings& settings, const OnProgress& on_progress);
+
+/// What the layout designer finds beside what is known to be best, with the time it takes, and the survey of survival over families.
+Report array_design(const RunSettings& settings, const OnProgress& on_progress);
+
 inline constexpr std::uint64_t isolation_trials = 100'000;
 inline constexpr std::uint64_t paper_002_trials = 400'000;
 inline constexpr std::uint64_t ceiling_trials = 200'000;
@@ -52,5 +59,7 @@ inline constexpr std::uint64_t detection_delay_trials = 60;
 inline constexpr std::uint64_t motion_noise_trials = 30;
 inline constexpr std::uint64_t detection_seeds_trials = 60;  // with each seed
 inline constexpr std::uint64_t motion_terms_trials = 60;
+inline constexpr std::uint64_t field_trials = 4;  // each fault in each log
+inline constexpr std::uint64_t array_design_trials = 4000;
 
 }  // namespace quorient::studies
