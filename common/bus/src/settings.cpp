@@ -17,8 +17,8 @@ constexpr std::array vendors{std::pair{Vendor::fastdds, "fastdds"}, std::pair{Ve
 constexpr std::array transports{std::pair{Transport::udp, "udp"}, std::pair{Transport::shared_memory, "shm"},
                                 std::pair{Transport::iceoryx, "iceoryx"}, std::pair{Transport::in_process, "in-process"}};
 
-constexpr std::array shared_memory_words{std::pair{SharedMemory::required, "required"}, std::pair{SharedMemory::preferred, "preferred"},
-                                         std::pair{SharedMemory::off, "off"}};
+constexpr std::array shared_memory_choices{std::pair{SharedMemory::required, "required"}, std::pair{SharedMemory::preferred, "preferred"},
+                                           std::pair{SharedMemory::off, "off"}};
 
 constexpr double loopback_ratio = 8;
 constexpr double shortest_loopback_s = 0.02;  // above 200 Hz the answers of nine processes would fill two cores
@@ -30,8 +30,16 @@ bool is_loopback(std::string_view interface)
     return !addresses.empty() && std::ranges::all_of(addresses, [](const std::string& address) { return address.starts_with("127."); });
 }
 
-/// Above this domain the RTPS ports leave the range of UDP [RTPS 9.6.1.1].
-constexpr std::uint32_t highest_domain = 230;
+constexpr double highest_domain = 230;  // above it the RTPS ports leave the range of UDP [RTPS 9.6.1.1]
+
+constexpr std::array<settings::Setting<Settings>, 2> record{{
+    {"domain", &Settings::domain, "", {.lowest = 0, .highest = highest_domain}, "DDS domain."},
+    {"participants_per_host",
+     &Settings::participants_per_host,
+     "",
+     {.lowest = 1, .highest = 60},
+     "Participants that are looked for at each address of `peers`, ours included. Each costs a packet a second."},
+}};
 
 }  // namespace
 
@@ -51,12 +59,26 @@ tl::expected<Transport, std::string> transport_from(std::string_view word)
     return tl::make_unexpected(fmt::format("unknown transport '{}'; known are udp, shm (Fast DDS) and iceoryx (Cyclone DDS)", word));
 }
 
-tl::expected<SharedMemory, std::string> shared_memory_from(std::string_view word)
+std::vector<std::pair<std::string, Vendor>> vendor_words()
 {
-    for (const auto& [choice, name] : shared_memory_words) {
-        if (word == name) return choice;
-    }
-    return tl::make_unexpected(fmt::format("unknown word '{}'; known are required, preferred and off", word));
+    std::vector<std::pair<std::string, Vendor>> words;
+    for (const auto& [vendor, name] : vendors) words.emplace_back(name, vendor);
+    return words;
+}
+
+std::vector<std::pair<std::string, Transport>> transport_words()
+{
+    std::vector<std::pair<std::string, Transport>> words;
+    for (const auto& [transport, name] : transports)
+        if (transport != Transport::in_process) words.emplace_back(name, transport);
+    return words;
+}
+
+std::vector<std::pair<std::string, SharedMemory>> shared_memory_words()
+{
+    std::vector<std::pair<std::string, SharedMemory>> words;
+    for (const auto& [choice, name] : shared_memory_choices) words.emplace_back(name, choice);
+    return words;
 }
 
 std::string_view to_string(Vendor vendor)
@@ -86,26 +108,40 @@ double repair_pause_s(const Settings& settings)
     return is_loopback(settings.interface) ? heartbeat_s(settings) / 2 : 0;
 }
 
-std::vector<std::string> problems(const Settings& settings)
+settings::Record<Settings> bus_record()
 {
-    std::vector<std::string> found;
+    return record;
+}
+
+std::vector<Finding> findings(const Settings& settings)
+{
+    std::vector<Finding> found;
     if (settings.vendor == Vendor::local) return found;
-    if (settings.domain > highest_domain) found.push_back(fmt::format("DDS domain {} is above {}", settings.domain, highest_domain));
+    if (settings.domain > highest_domain)
+        found.push_back({"domain", fmt::format("DDS domain {} is above {}", settings.domain, highest_domain)});
     if (!settings.interface.empty() && addresses_of(settings.interface).empty())
-        found.push_back(fmt::format("no network interface '{}' with an IPv4 address is up; there are {}", settings.interface,
-                                    fmt::join(interface_names(), ", ")));
+        found.push_back({"interface", fmt::format("no network interface '{}' with an IPv4 address is up; there are {}", settings.interface,
+                                                  fmt::join(interface_names(), ", "))});
     for (const auto& peer : settings.peers) {
         if (!is_ipv4_address(peer))
-            found.push_back(fmt::format("peer '{}' is not an IPv4 address (a name would block discovery for seconds)", peer));
+            found.push_back({"peers", fmt::format("peer '{}' is not an IPv4 address (a name would block discovery for seconds)", peer)});
     }
     const bool shared = settings.transport == Transport::shared_memory || settings.transport == Transport::iceoryx;
     if (settings.transport == Transport::shared_memory && settings.vendor != Vendor::fastdds)
-        found.push_back("transport shm belongs to fastdds; cyclonedds has iceoryx");
+        found.push_back({"transport", "transport shm belongs to fastdds; cyclonedds has iceoryx"});
     if (settings.transport == Transport::iceoryx && settings.vendor != Vendor::cyclonedds)
-        found.push_back("transport iceoryx belongs to cyclonedds; fastdds has shm");
+        found.push_back({"transport", "transport iceoryx belongs to cyclonedds; fastdds has shm"});
     if (shared && settings.security)
-        found.push_back("shared memory would carry what DDS Security encrypts in plain text: use transport udp, or no security");
+        found.push_back(
+            {"security", "shared memory would carry what DDS Security encrypts in plain text: use transport udp, or no security"});
     return found;
+}
+
+std::vector<std::string> problems(const Settings& settings)
+{
+    std::vector<std::string> texts;
+    for (auto& finding : findings(settings)) texts.push_back(std::move(finding.text));
+    return texts;
 }
 
 }  // namespace quorient::bus

@@ -103,7 +103,7 @@ TEST(BusSettings, refuse_shared_memory_under_security)
     settings.vendor = Vendor::fastdds;
     settings.transport = Transport::shared_memory;
     EXPECT_THAT(problems(settings), IsEmpty());
-    settings.security = true;
+    settings.security.emplace();
     EXPECT_THAT(problems(settings), ElementsAre(HasSubstr("plain text")));
 }
 

@@ -4,6 +4,8 @@
 #include "quorient/bus/roudi.hpp"
 #include "quorient/messages/meaning.hpp"
 #include "ros2.hpp"
+#include "security.hpp"
+#include "sender.hpp"
 #include "types.hpp"
 
 #include <dds/dds.h>
@@ -186,7 +188,10 @@ private:
 
 class CycloneReader final : public Reader {
 public:
-    CycloneReader(Entity reader, TypeId type, Transport asked) : reader_(std::move(reader)), type_(type), asked_(asked) {}
+    CycloneReader(Entity reader, TypeId type, Transport asked, bool secured)
+        : reader_(std::move(reader)), type_(type), asked_(asked), secured_(secured)
+    {
+    }
 
     bool take(void* message) override
     {
@@ -194,7 +199,9 @@ public:
         dds_sample_info_t info{};
         void* samples[1] = {message};
         while (dds_take(reader_.handle(), samples, &info, 1, 1) == 1) {
-            if (info.valid_data) return true;
+            if (!info.valid_data) continue;
+            writer_ = info.publication_handle;
+            return true;
         }
         return false;
     }
@@ -209,16 +216,21 @@ public:
                 asked_};
     }
 
+    Sender sender() override { return cyclonedds::sender_of(reader_.handle(), writer_, secured_); }
+
 private:
     Entity reader_;
     TypeId type_;
     Transport asked_;
+    bool secured_;
+    dds_instance_handle_t writer_ = 0;  ///< the writer of the sample taken last
 };
 
 class CycloneBus final : public Bus {
 public:
-    CycloneBus(Entity domain, Entity participant, Transport asked, bool shared)
-        : asked_(asked),
+    CycloneBus(Entity domain, Entity participant, const Settings& settings, bool shared)
+        : asked_(settings.transport),
+          secured_(settings.security.has_value()),
           roudi_life_(shared ? roudi_life() : 0),
           domain_(std::move(domain)),
           participant_(std::move(participant)),
@@ -233,6 +245,8 @@ public:
     }
 
     Vendor vendor() const override { return Vendor::cyclonedds; }
+
+    std::vector<std::string> refusals() override { return secured_ ? cyclonedds::library_refusals().take() : std::vector<std::string>{}; }
 
     bool shared_memory_lost() const override { return roudi_life_ != 0 && roudi_life() != roudi_life_; }
 
@@ -254,7 +268,7 @@ private:
         const auto condition = dds_create_readcondition(reader.handle(), DDS_ANY_STATE);
         if (condition < 0 || dds_waitset_attach(waitset_.handle(), condition, 0) < 0)
             throw Error(fmt::format("Cyclone DDS: {}: cannot wait for data", topic.name));
-        return std::make_unique<CycloneReader>(std::move(reader), topic.type, asked);
+        return std::make_unique<CycloneReader>(std::move(reader), topic.type, asked, secured_);
     }
 
     dds_entity_t topic_of(const TopicSpec& spec)
@@ -267,6 +281,7 @@ private:
     }
 
     Transport asked_;
+    bool secured_;
     std::uint64_t roudi_life_;
     Entity domain_;  // outlives the participant, which takes everything it made with it
     Entity participant_;
@@ -338,10 +353,14 @@ tl::expected<std::unique_ptr<Bus>, std::string> open_cyclonedds(const Settings& 
 
     const QosHandle qos{dds_create_qos()};
     dds_qset_entity_name(qos.get(), settings.participant.c_str());
+    if (settings.security) {
+        cyclonedds::library_refusals();  // reads the log from now on
+        cyclonedds::secure(*qos, *settings.security);
+    }
     const auto participant = dds_create_participant(settings.domain, qos.get(), nullptr);
     if (participant < 0) return tl::make_unexpected(fmt::format("Cyclone DDS: participant: {}", dds_strretcode(-participant)));
     try {
-        return std::make_unique<CycloneBus>(std::move(owned_domain), Entity{participant}, settings.transport, shared);
+        return std::make_unique<CycloneBus>(std::move(owned_domain), Entity{participant}, settings, shared);
     } catch (const Error& error) {
         return tl::make_unexpected(std::string{error.what()});
     }

@@ -4,6 +4,7 @@
 
 #include "participant.hpp"
 #include "ros2.hpp"
+#include "security.hpp"
 #include "types.hpp"
 
 #include <fmt/format.h>
@@ -140,14 +141,15 @@ private:
 class FastReader final : public Reader {
 public:
     FastReader(dds::Subscriber* subscriber, dds::DataReader* reader, dds::WaitSet& waitset, dds::TypeSupport type, const TopicSpec& topic,
-               Transports transports)
+               Transports transports, const fastdds::Peers& peers)
         : subscriber_(subscriber),
           reader_(reader),
           waitset_(waitset),
           type_(std::move(type)),
           sample_(type_.create_data()),
           topic_(topic),
-          transports_(transports)
+          transports_(transports),
+          peers_(peers)
     {
         reader_->get_statuscondition().set_enabled_statuses(dds::StatusMask::data_available());
         waitset_.attach_condition(reader_->get_statuscondition());
@@ -164,6 +166,7 @@ public:
         dds::SampleInfo info;
         while (reader_->take_next_sample(sample_, &info) == ReturnCode_t::RETCODE_OK) {
             if (!info.valid_data) continue;
+            writer_ = info.publication_handle;
             if (fastdds::is_ros2(topic_.type)) fastdds::ros2_from_vendor(topic_.type, sample_, message);
             else std::memcpy(message, sample_, topic_.size);
             return true;
@@ -181,6 +184,13 @@ public:
                 transports_.in_use, transports_.asked};
     }
 
+    Sender sender() override
+    {
+        GuidPrefix guid{};
+        for (std::size_t i = 0; i < guid.size(); ++i) guid[i] = writer_.value[i];
+        return peers_.sender(guid);
+    }
+
 private:
     dds::Subscriber* subscriber_;
     dds::DataReader* reader_;
@@ -189,12 +199,15 @@ private:
     void* sample_;
     TopicSpec topic_;
     Transports transports_;
+    const fastdds::Peers& peers_;
+    dds::InstanceHandle_t writer_;  ///< the writer of the sample taken last
 };
 
 class FastBus final : public Bus {
 public:
-    FastBus(const Settings& settings, dds::DomainParticipant* participant)
+    FastBus(const Settings& settings, std::unique_ptr<fastdds::Peers> peers, dds::DomainParticipant* participant)
         : settings_(settings),
+          peers_(std::move(peers)),
           participant_(participant),
           publisher_(participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT)),
           subscriber_(participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT)),
@@ -215,6 +228,14 @@ public:
     }
 
     Vendor vendor() const override { return Vendor::fastdds; }
+
+    std::vector<std::string> refusals() override
+    {
+        if (!settings_.security) return {};
+        auto all = peers_->refusals();
+        for (auto& refusal : fastdds::library_refusals().take()) all.push_back(std::move(refusal));
+        return all;
+    }
 
     Transport transport() const { return transports_.in_use; }
 
@@ -265,7 +286,7 @@ private:
         auto [type, entity] = topic_of(topic);
         auto* reader = subscriber_->create_datareader(entity, qos);
         if (!reader) throw Error(fmt::format("Fast DDS: cannot read {}", topic.name));
-        return std::make_unique<FastReader>(subscriber_, reader, waitset_, type, topic, transports_);
+        return std::make_unique<FastReader>(subscriber_, reader, waitset_, type, topic, transports_, *peers_);
     }
 
     std::pair<dds::TypeSupport, dds::Topic*> topic_of(const TopicSpec& spec)
@@ -281,6 +302,7 @@ private:
     }
 
     Settings settings_;
+    std::unique_ptr<fastdds::Peers> peers_;
     dds::DomainParticipant* participant_;
     dds::Publisher* publisher_;
     dds::Subscriber* subscriber_;
@@ -297,9 +319,10 @@ tl::expected<std::unique_ptr<Bus>, std::string> open_fastdds(const Settings& ask
     const auto checked = fastdds::with_room_in_shared_memory(asked);
     if (!checked) return tl::make_unexpected(checked.error());
     const auto& settings = *checked;
-    auto* participant = fastdds::join(settings);
+    auto peers = std::make_unique<fastdds::Peers>(settings.security.has_value());
+    auto* participant = fastdds::join(settings, *peers);
     if (!participant) return tl::make_unexpected(fmt::format("Fast DDS: cannot join domain {}", settings.domain));
-    auto bus = std::make_unique<FastBus>(settings, participant);
+    auto bus = std::make_unique<FastBus>(settings, std::move(peers), participant);
     if (shares_memory(settings) && settings.shared_memory == SharedMemory::required && bus->transport() == Transport::udp)
         return tl::make_unexpected(std::string{
             "Fast DDS cannot open its shared memory in /dev/shm (read-only, or of another user?): mend that, or use transport udp, "

@@ -9,6 +9,8 @@ namespace {
 constexpr std::uint8_t acknack = 0x06;
 constexpr std::uint8_t final_flag = 0x02;
 constexpr std::uint16_t vendor_eprosima = 0x010f;
+constexpr std::uint8_t protection_begins = 0x31;  ///< SEC_PREFIX [DDS Security 7.3.6]
+constexpr std::uint8_t protection_ends = 0x32;    ///< SEC_POSTFIX
 
 /// Places in an ACKNACK's content [RTPS 9.4.5.3]: reader, writer, base and size of a set, its bitmap, a count.
 constexpr std::size_t writer_kind = 7;
@@ -44,11 +46,13 @@ std::optional<std::vector<std::uint8_t>> with_understood_acknacks(const std::uin
     constexpr std::size_t vendor = 6;
     if (size < header_size || (data[vendor] << 8U | data[vendor + 1]) == vendor_eprosima) return std::nullopt;
     std::optional<std::vector<std::uint8_t>> changed;
+    bool is_protected = false;
     for (std::size_t place = header_size; place + submessage_header_size <= size;) {
         const auto header = submessage_header_at(data + place);
         place += submessage_header_size;
         if (header.length > size - place) break;
-        if (header.id == acknack && is_for_a_builtin_writer({data + place, header.length, header.little})) {
+        is_protected = header.id == protection_begins || (is_protected && header.id != protection_ends);
+        if (header.id == acknack && !is_protected && is_for_a_builtin_writer({data + place, header.length, header.little})) {
             if (!changed) changed.emplace(data, data + size);
             make_understood(changed->data() + place, header);
         }

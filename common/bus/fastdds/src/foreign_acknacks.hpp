@@ -9,6 +9,7 @@ namespace quorient::bus::fastdds {
 
 /// A datagram of another vendor, with its ACKNACKs [RTPS 9.4.5.3] to built-in writers rewritten into the form to which Fast DDS replies:
 /// counted from 1, and with base 0 from a reader that has received nothing yet (base 1, nothing requested, an answer wanted).
+/// Signed submessages stay as they are.
 /// @param data  a datagram that `is_sound_rtps`
 /// @returns nothing where the datagram needs no change.
 ///

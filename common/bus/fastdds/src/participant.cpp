@@ -3,6 +3,7 @@
 #include "guarded_transport.hpp"
 #include "quorient/bus/interfaces.hpp"
 #include "quorient/bus/roudi.hpp"
+#include "security.hpp"
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
@@ -100,11 +101,15 @@ tl::expected<Settings, std::string> with_room_in_shared_memory(Settings settings
     return settings;
 }
 
-dds::DomainParticipant* join(const Settings& settings)
+dds::DomainParticipant* join(const Settings& settings, Peers& peers)
 {
     dds::Log::SetVerbosity(dds::Log::Error);
     dds::DomainParticipantQos qos;
     qos.name(settings.participant);
+    if (settings.security) {
+        secure(qos.properties(), *settings.security);
+        library_refusals();  // reads the log from now on
+    }
     const auto listening = std::make_shared<std::atomic<bool>>(false);
     add_transports(settings, listening, qos.transport());
     auto& builtin = qos.wire_protocol().builtin;
@@ -120,7 +125,7 @@ dds::DomainParticipant* join(const Settings& settings)
         add_multicast(settings.domain, builtin.initialPeersList);
     }
 
-    auto* participant = dds::DomainParticipantFactory::get_instance()->create_participant(settings.domain, qos);
+    auto* participant = dds::DomainParticipantFactory::get_instance()->create_participant(settings.domain, qos, &peers, dds::StatusMask::none());
     listening->store(true);
     return participant;
 }

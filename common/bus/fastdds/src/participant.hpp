@@ -1,5 +1,6 @@
 #pragma once
 
+#include "peers.hpp"
 #include "quorient/bus/settings.hpp"
 
 #include <string>
@@ -19,7 +20,7 @@ bool shares_memory(const Settings& settings);
 tl::expected<Settings, std::string> with_room_in_shared_memory(Settings settings);
 
 /// A participant with the transports, announced addresses, peers and discovery periods of the settings.
-/// @returns null if the domain cannot be joined.
-eprosima::fastdds::dds::DomainParticipant* join(const Settings& settings);
+/// @param peers  receives the other participants; must outlive this one. @returns null if the domain cannot be joined.
+eprosima::fastdds::dds::DomainParticipant* join(const Settings& settings, Peers& peers);
 
 }  // namespace quorient::bus::fastdds

@@ -92,6 +92,26 @@ TEST(ForeignAcknacks, of_samples_and_of_the_own_vendor_are_left_alone)
     }
 }
 
+TEST(ForeignAcknacks, that_are_signed_are_left_alone)
+{
+    const Datagram begin{0x31, 1, 4, 0, 1, 2, 3, 4}, end{0x32, 1, 4, 0, 5, 6, 7, 8};
+    const auto append_protected = [&](Datagram& datagram) {
+        datagram.insert(datagram.end(), begin.begin(), begin.end());
+        append(datagram, {}, true);
+        datagram.insert(datagram.end(), end.begin(), end.end());
+    };
+    auto datagram = header_of(cyclone);
+    append_protected(datagram);
+    EXPECT_EQ(understood(datagram), std::nullopt);
+
+    auto expected = datagram;
+    append(datagram, {}, true);  // behind the end of the protection: a plain one
+    append(expected, {.base = 0, .count = 1}, true);
+    append_protected(datagram);
+    append_protected(expected);
+    EXPECT_EQ(understood(datagram), expected);
+}
+
 TEST(ForeignAcknacks, that_are_cut_or_claim_another_size_are_left_alone)
 {
     const auto whole = message(cyclone, {{.bitmap = {7}}}, true);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "quorient/bus/sender.hpp"
 #include "quorient/bus/settings.hpp"
 #include "quorient/bus/topics.hpp"
 
@@ -10,6 +11,7 @@
 #include <string_view>
 #include <tl/expected.hpp>
 #include <utility>
+#include <vector>
 
 namespace quorient::bus {
 
@@ -45,6 +47,8 @@ public:
     /// Takes the oldest sample. @returns false when there is none.
     virtual bool take(void* message) = 0;
     virtual EndpointStatus status() = 0;
+    /// The writer of the sample taken last. Slow: for rare samples.
+    virtual Sender sender() { return {}; }
 };
 
 template <class Message>
@@ -67,6 +71,7 @@ public:
 
     bool take(Message& message) { return reader_->take(&message); }
     EndpointStatus status() { return reader_->status(); }
+    Sender sender() { return reader_->sender(); }
 
 private:
     std::unique_ptr<Reader> reader_;
@@ -99,6 +104,9 @@ public:
     /// Whether the shared memory that this bus joined has lost its daemon. Processes that share it already keep exchanging samples; a
     /// process that starts later does not join them.
     virtual bool shared_memory_lost() const { return false; }
+
+    /// What DDS Security refused since the last call, each text once, partly in the vendor's language.
+    virtual std::vector<std::string> refusals() { return {}; }
 
 private:
     virtual std::unique_ptr<Writer> make_writer(const TopicSpec& topic, const WriterOptions& options) = 0;

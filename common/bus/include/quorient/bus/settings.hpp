@@ -1,11 +1,15 @@
 #pragma once
 
+#include "quorient/bus/security.hpp"
 #include "quorient/messages/codes.hpp"
+#include "quorient/settings/setting.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+#include <utility>
 #include <vector>
 
 namespace quorient::bus {
@@ -28,15 +32,22 @@ struct Settings {
     std::string participant;      ///< name shown to other tools
     double heartbeat_s = 0.0025;  ///< for reliable writers on a network: at most half a frame interval
     double voted_lease_s = 0.05;  ///< lease requested by readers of `voted`: at least the writers'
-    bool security = false;        ///< DDS Security; refused together with shared memory
-    /// Number of participant slots to probe per peer address, ours included. Each slot costs one packet per second.
+    std::optional<SecurityFiles> security;  ///< plain DDS without; refused together with shared memory
     std::uint32_t participants_per_host = 30;
 };
+
+/// Its numbers, and what each means.
+settings::Record<Settings> bus_record();
 
 /// @returns an error that lists the words, e.g. for "opendds".
 tl::expected<Vendor, std::string> vendor_from(std::string_view word);
 tl::expected<Transport, std::string> transport_from(std::string_view word);
-tl::expected<SharedMemory, std::string> shared_memory_from(std::string_view word);
+
+/// The words of files, each with what it means.
+std::vector<std::pair<std::string, Vendor>> vendor_words();
+std::vector<std::pair<std::string, Transport>> transport_words();
+std::vector<std::pair<std::string, SharedMemory>> shared_memory_words();
+
 std::string_view to_string(Vendor vendor);
 std::string_view to_string(Transport transport);
 
@@ -54,5 +65,14 @@ double repair_pause_s(const Settings& settings);
 /// a transport that the vendor does not have, shared memory together with security.
 /// @returns one line per problem; empty when all is well.
 std::vector<std::string> problems(const Settings& settings);
+
+/// A problem and the setting that has it, by its key in files.
+struct Finding {
+    std::string_view key;
+    std::string text;
+};
+
+/// The same, each with its setting.
+std::vector<Finding> findings(const Settings& settings);
 
 }  // namespace quorient::bus

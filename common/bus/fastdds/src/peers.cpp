@@ -1,0 +1,49 @@
+#include "peers.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+namespace quorient::bus::fastdds {
+
+using eprosima::fastrtps::rtps::GUID_t;
+using eprosima::fastrtps::rtps::ParticipantAuthenticationInfo;
+using eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
+
+namespace {
+
+GuidPrefix prefix_of(const GUID_t& whole)
+{
+    GuidPrefix guid{};
+    std::copy_n(whole.guidPrefix.value, guid.size(), guid.begin());
+    return guid;
+}
+
+}  // namespace
+
+void Peers::on_participant_discovery(eprosima::fastdds::dds::DomainParticipant*, ParticipantDiscoveryInfo&& discovered)
+{
+    const auto guid = prefix_of(discovered.info.m_guid);
+    const std::string name = discovered.info.m_participantName.c_str();
+    const bool gone = discovered.status == ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
+                      discovered.status == ParticipantDiscoveryInfo::DROPPED_PARTICIPANT;
+    if (secured_ && !gone && discovered.info.security_attributes_ == 0)
+        refusals_.add(fmt::format("refuses '{}': it has no certificate", name));
+    const std::lock_guard lock{mutex_};
+    if (gone) names_.erase(guid);
+    else names_[guid] = name;
+}
+
+void Peers::onParticipantAuthentication(eprosima::fastdds::dds::DomainParticipant*, ParticipantAuthenticationInfo&& info)
+{
+    if (info.status == ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT)
+        refusals_.add(fmt::format("refuses '{}': its certificate is not valid, or not its own", sender(prefix_of(info.guid)).name));
+}
+
+Sender Peers::sender(const GuidPrefix& guid) const
+{
+    const std::lock_guard lock{mutex_};
+    const auto known = names_.find(guid);
+    return make_sender(known == names_.end() ? std::string{} : known->second, guid, secured_);
+}
+
+}  // namespace quorient::bus::fastdds

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "quorient/bus/refusals.hpp"
+#include "quorient/bus/sender.hpp"
+
+#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <map>
+#include <mutex>
+#include <string>
+
+namespace quorient::bus::fastdds {
+
+/// The other participants, by the names that they announce. Fast DDS calls it from its own threads.
+class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
+public:
+    explicit Peers(bool secured) : secured_(secured) {}
+
+    Sender sender(const GuidPrefix& guid) const;
+    std::vector<std::string> refusals() { return refusals_.take(); }
+
+private:
+    void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant*,
+                                  eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
+    void onParticipantAuthentication(eprosima::fastdds::dds::DomainParticipant*,
+                                     eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
+
+    bool secured_;
+    mutable std::mutex mutex_;
+    std::map<GuidPrefix, std::string> names_;
+    Refusals refusals_;
+};
+
+}  // namespace quorient::bus::fastdds

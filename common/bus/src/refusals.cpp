@@ -1,0 +1,20 @@
+#include "quorient/bus/refusals.hpp"
+
+#include <utility>
+
+namespace quorient::bus {
+
+void Refusals::add(std::string text)
+{
+    const std::lock_guard lock{mutex_};
+    if (known_.size() == most || !known_.insert(text).second) return;
+    new_.push_back(std::move(text));
+}
+
+std::vector<std::string> Refusals::take()
+{
+    const std::lock_guard lock{mutex_};
+    return std::exchange(new_, {});
+}
+
+}  // namespace quorient::bus
