@@ -1,0 +1,79 @@
+"""What the monitor costs: its processor time, and the pipeline's latency with and without it, in turns. A page is open all the time.
+
+    QUORIENT_BIN=build/release/bin python3 -m integration_tests.latency.monitor_cost --rounds 5 --seconds 10
+"""
+import argparse
+import http.client
+import statistics
+import sys
+import threading
+
+from integration_tests.latency import run, table
+
+CASES = ({"transport": "UDP, Cyclone DDS", "rate_hz": 200}, {"transport": "UDP, Cyclone DDS", "rate_hz": 1000},
+         {"transport": "UDP, Cyclone DDS", "rate_hz": 1000, "axes": 24})
+
+
+class Reader(threading.Thread):
+    """An open page: reads the stream, as fast as it comes, until the monitor ends."""
+
+    def __init__(self, port):
+        super().__init__(daemon=True)
+        self.port, self.bytes, self.ended = port, 0, False
+
+    def run(self):
+        while not self.ended:
+            try:
+                connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=2)
+                connection.request("GET", "/stream")
+                response = connection.getresponse()
+                while data := response.read1(65536):
+                    self.bytes += len(data)
+            except OSError:
+                threading.Event().wait(0.05)
+
+
+def measure(runner, case, seconds, port, monitored):
+    domain = runner.domain = runner.next_domain(1)
+    file = run.system_file(runner.directory, case, domain, 1, seconds)
+    commands = run.our_commands(file, case)
+    if monitored:
+        commands = {"monitor": [run.BIN / "quorient-monitor", file, "--set", f"monitor.port={port}"], **commands}
+    reader = Reader(port)
+    if monitored:
+        reader.start()
+    report = runner.run(commands, domain, case, seconds)
+    reader.ended = True
+    return report, reader.bytes
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--seconds", type=float, default=10)
+    parser.add_argument("--port", type=int, default=18080)
+    parser.add_argument("--domain", type=int, default=70)
+    options = parser.parse_args()
+    options.limit = 60
+    runner = run.Runner(options)
+    print("| rate | axes | p50 without, with | p99 without, with | lost without, with | monitor: processor | memory | stream |")
+    print("|---|---|---|---|---|---|---|---|")
+    for case in CASES:
+        found = {False: [], True: []}
+        usage, streamed = [], []
+        for number in range(options.rounds):
+            for monitored in ((False, True), (True, False))[number % 2]:
+                report, size = measure(runner, case, options.seconds, options.port, monitored)
+                found[monitored].append((report["hops"]["sensor_to_voted"]["p50"], report["hops"]["sensor_to_voted"]["p99"], table.lost(report)))
+                if monitored and "monitor" in report["processes"]:
+                    usage.append(report["processes"]["monitor"])
+                    streamed.append(size / options.seconds)
+        middle = lambda monitored, place: statistics.median(values[place] for values in found[monitored])  # noqa: E731
+        print(f"| {case['rate_hz']} Hz | {case.get('axes', 4)} | {middle(False, 0):.0f}, {middle(True, 0):.0f} us | {middle(False, 1):.0f}, {middle(True, 1):.0f} us | "
+              f"{sum(v[2] for v in found[False])}, {sum(v[2] for v in found[True])} | {statistics.median(u['cpu_percent'] for u in usage):.1f} % of a core | "
+              f"{max(u['rss_mib'] for u in usage):.0f} MiB | {statistics.median(streamed) / 1000:.0f} kB/s |", flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

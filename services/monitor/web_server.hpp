@@ -1,0 +1,44 @@
+#pragma once
+
+#include <httplib.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace quorient::monitor {
+
+/// What clients may take from this process.
+struct Limits {
+    std::size_t threads = 128;                         ///< one per open connection; a connection more is closed at once
+    std::size_t streams = 100;                         ///< of them, connections that stay open
+    std::size_t request_bytes = 64 * 1024;             ///< of one request
+    std::chrono::milliseconds request_patience{3000};  ///< for a whole request to arrive
+    std::chrono::milliseconds write_patience{5000};    ///< for a client that does not read
+    int send_buffer_bytes = 256 * 1024;
+};
+
+/// cpp-httplib's server with bounds: on connections, on the bytes and the time of a request, and on the patience with a client that does not read.
+class WebServer final : public httplib::Server {
+public:
+    explicit WebServer(const Limits& limits);
+
+    /// Binds the address. @returns the port; throws std::runtime_error with the reason where it is refused.
+    int open(const std::string& address, int port);
+
+    /// Ends the streams within a tenth of a second; stop() follows.
+    void end_streams() { ending_ = true; }
+
+    std::uint64_t refused() const { return refused_; }
+
+private:
+    bool process_and_close_socket(socket_t socket) override;
+
+    Limits limits_;
+    std::atomic<std::uint64_t> refused_{0};
+    std::atomic<bool> ending_{false};
+};
+
+}  // namespace quorient::monitor
