@@ -2,6 +2,7 @@
 
 #include "csv_input.hpp"
 #include "quorient/geometry/layouts.hpp"
+#include "quorient/system/axes_file.hpp"
 
 #include <fmt/format.h>
 
@@ -35,12 +36,13 @@ tl::expected<geometry::SensorCluster, std::string> load_axes(const std::string& 
 void add_cluster_options(Verb& verb, ClusterChoice& choice)
 {
     const auto layout = verb.option("--layout", choice.layout, "a layout of the catalogue (see `quorient layout`)");
-    verb.option("--axes", choice.axes_file, "a file of unit vectors, one axis per row: x, y, z").in_place_of({layout});
+    verb.option("--axes", choice.axes_file, "a file of unit vectors: rows of x, y, z, or YAML of design or calibrate").in_place_of({layout});
 }
 
 tl::expected<geometry::SensorCluster, std::string> load_cluster(const ClusterChoice& choice)
 {
-    if (!choice.axes_file.empty()) return load_axes(choice.axes_file);
+    const bool yaml = choice.axes_file.ends_with(".yaml") || choice.axes_file.ends_with(".yml");
+    if (!choice.axes_file.empty()) return yaml ? system::load_axes_file(choice.axes_file) : load_axes(choice.axes_file);
     if (choice.layout.empty()) return tl::unexpected(std::string("no axes: name a layout of the catalogue, or give --axes FILE"));
     return geometry::layout(choice.layout);
 }

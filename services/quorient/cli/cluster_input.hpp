@@ -8,7 +8,7 @@
 
 namespace quorient::cli {
 
-/// What a user names where a verb needs axes: a layout of the catalogue or a file of unit vectors.
+/// What a user names where a verb needs axes: a layout of the catalogue or a file of unit vectors (rows of x, y, z; .yaml: see system::load_axes_file).
 struct ClusterChoice {
     std::string layout;
     std::string axes_file;

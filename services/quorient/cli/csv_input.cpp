@@ -86,10 +86,23 @@ tl::expected<void, std::string> CsvReader::split(std::string_view text)
     return {};
 }
 
+std::string CsvReader::nothing() const
+{
+    const auto wanted = options_.columns ? fmt::format("a row of {} numbers", *options_.columns) : std::string("a row of numbers");
+    const auto found = !header_.empty() ? fmt::format("only a header of {} names", header_.size())
+                       : line_ > 0      ? fmt::format("only comments and blank lines ({})", line_)
+                                        : std::string("nothing at all");
+    return fmt::format("{}: expected {}, there is {}", name_, wanted, found);
+}
+
 bool CsvReader::take_header()
 {
     double ignored = 0;
-    if (std::ranges::any_of(cells_, [&](const Cell& cell) { return parse(cell.text, ignored) != Parse::not_a_number; })) return false;
+    const auto is_like_a_number = [&](const Cell& cell) {
+        constexpr std::string_view beginnings = "0123456789+-.";
+        return beginnings.find(cell.text.front()) != std::string_view::npos || parse(cell.text, ignored) != Parse::not_a_number;
+    };
+    if (std::ranges::any_of(cells_, is_like_a_number)) return false;
     for (const Cell& cell : cells_) header_.emplace_back(cell.text);
     return true;
 }

@@ -23,7 +23,7 @@ struct CsvRow {
 };
 
 /// Rows of numbers, one at a time: cells separated by commas or white space, `#` starts a comment, blank lines are skipped,
-/// a first row without any number is a header. Every error reads `file:line:column: what is wrong and what to do`
+/// a first row of words is a header: none of its cells is, or begins like, a number. Every error reads `file:line:column: what is wrong and what to do`
 /// (1-based, columns count characters of the line).
 class CsvReader {
 public:
@@ -38,6 +38,9 @@ public:
 
     /// Column names; empty where there is no header or no row was read yet.
     const std::vector<std::string>& header() const { return header_; }
+
+    /// What to say of an input that has ended without a row: what was looked for, and what there was.
+    std::string nothing() const;
 
     /// `name:line:column: what`, for problems that only the caller can see; column 0 = the line as a whole.
     std::string at(std::size_t line, std::size_t column, std::string_view what) const;

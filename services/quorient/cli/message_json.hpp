@@ -1,6 +1,7 @@
 #pragma once
 
 #include "json_output.hpp"
+#include "quorient/messages/exclusions.hpp"
 #include "quorient/messages/fields.hpp"
 #include "quorient/messages/name.hpp"
 
@@ -27,6 +28,14 @@ Json value_json(const std::array<Element, Size>& list)
 {
     Json json = Json::array();
     for (const auto& element : list) json.push_back(value_json(element));
+    return json;
+}
+
+/// The first contaminated frame of each axis: null for one that is not excluded.
+inline Json value_json(const Exclusions& excluded_from)
+{
+    Json json = Json::array();
+    for (const auto sequence : excluded_from) json.push_back(sequence == never ? Json(nullptr) : Json(sequence));
     return json;
 }
 

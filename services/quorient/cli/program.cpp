@@ -1,12 +1,21 @@
 #include "program.hpp"
 
+#include "quorient/configuration/suggestion.hpp"
 #include "quorient/runtime/options.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <iostream>
 #include <set>
+#include <system_error>
+#include <type_traits>
 
 namespace quorient::cli {
 
@@ -62,38 +71,12 @@ std::vector<std::string> with_joined_lists(const std::vector<NumberList>& lists,
     return joined;
 }
 
-std::size_t distance_between(std::string_view a, std::string_view b)
-{
-    std::vector<std::size_t> row(b.size() + 1);
-    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i;
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-            diagonal = row[j];
-            row[j] = std::min({row[j] + 1, row[j - 1] + 1, changed});
-        }
-    }
-    return row.back();
-}
-
-/// " Did you mean 'replay'?", or nothing where no word is near.
-std::string suggestion(const std::string& word, const std::vector<std::string>& known)
-{
-    const auto nearest = std::min_element(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
-        return distance_between(word, a) < distance_between(word, b);
-    });
-    if (nearest == known.end() || distance_between(word, *nearest) > std::max<std::size_t>(2, word.size() / 3)) return {};
-    return fmt::format(" Did you mean '{}'?", *nearest);
-}
-
 }  // namespace
 
 void fail(std::string_view explanation)
 {
     fmt::print(stderr, "{}\n", explanation);
-    throw Exit{2};
+    throw Exit{ExitCode::refused};
 }
 
 Option Option::required() const
@@ -107,27 +90,22 @@ Option Option::one_of(std::vector<std::string> words) const
     option_->check(CLI::Validator(
         [words](std::string& given) {
             if (std::find(words.begin(), words.end(), given) != words.end()) return std::string{};
-            return fmt::format("unknown word '{}'; known are {}.{}", given, fmt::join(words, ", "), suggestion(given, words));
+            return fmt::format("unknown word '{}'; known are {}{}", given, configuration::listed(words), configuration::suggestion(given, words));
         },
         "{" + CLI::detail::join(words, ",") + "}"));
     return *this;
 }
 
-Option Option::between(double lowest, double highest) const
+Option Option::within(const settings::Bounds& bounds) const
 {
+    number_->bounds = bounds;
     option_->check(CLI::Validator(
-        [lowest, highest](std::string& given) {
+        [bounds](std::string& given) {
             double value = 0;
-            if (CLI::detail::lexical_cast(given, value) && value >= lowest && value <= highest) return std::string{};
-            return fmt::format("{} is not between {} and {}", given, lowest, highest);
+            if (CLI::detail::lexical_cast(given, value) && bounds.hold(value)) return std::string{};
+            return fmt::format("must be {}, got {}", bounds.text(), given);
         },
-        fmt::format("[{} - {}]", lowest, highest)));
-    return *this;
-}
-
-Option Option::positive() const
-{
-    option_->check(CLI::PositiveNumber);
+        bounds.text().empty() ? "" : "[" + bounds.text() + "]"));
     return *this;
 }
 
@@ -167,12 +145,49 @@ std::string Option::name() const
     return option_->get_name();
 }
 
+namespace {
+
+template <class Number>
+constexpr bool is_unsigned = std::is_unsigned_v<Number>;
+template <class Number>
+constexpr bool is_unsigned<std::optional<Number>> = std::is_unsigned_v<Number>;
+
+/// CLI11 takes "-1" for the largest unsigned number.
+void refuse_negative(CLI::Option* option, NumberOption& entry)
+{
+    entry.bounds = settings::not_negative;
+    option->check(CLI::Validator(
+        [](std::string& given) { return given.starts_with('-') ? fmt::format("must be 0 or more, got {}", given) : std::string{}; }, ""));
+}
+
+}  // namespace
+
+Option Verb::numeric(CLI::Option* option)
+{
+    numbers_->push_back({app_->get_name(), option->get_name(), {}});
+    option->check(CLI::Validator(
+        [](std::string& given) {
+            double value = 0;
+            if (!CLI::detail::lexical_cast(given, value)) return fmt::format("'{}' is no number", given);
+            return std::isfinite(value) ? std::string{} : fmt::format("must be finite, got {}", given);
+        },
+        ""));
+    return Option{option, &numbers_->back()};
+}
+
 template <class Target>
 Option Verb::option(const std::string& name, Target& target, const std::string& help)
 {
     auto* option = app_->add_option(name, target, help);
     option->allow_extra_args(false);
-    return Option{option};
+    constexpr bool is_text = std::is_same_v<Target, std::string> || std::is_same_v<Target, std::optional<std::string>> ||
+                             std::is_same_v<Target, std::vector<std::string>>;
+    if constexpr (is_text) return Option{option};
+    else {
+        const auto handle = numeric(option);
+        if constexpr (is_unsigned<Target>) refuse_negative(option, numbers_->back());
+        return handle;
+    }
 }
 
 template Option Verb::option(const std::string&, std::string&, const std::string&);
@@ -191,7 +206,9 @@ Option Verb::numbers(const std::string& name, std::vector<Number>& target, std::
 {
     auto* option = app_->add_option(name, target, help)->delimiter(',')->allow_extra_args(false);
     lists_->push_back({app_->get_name(), name, count});
-    return Option{option};
+    const auto handle = numeric(option);
+    if constexpr (is_unsigned<Number>) refuse_negative(option, numbers_->back());
+    return handle;
 }
 
 template Option Verb::numbers(const std::string&, std::vector<double>&, std::size_t, const std::string&);
@@ -210,7 +227,22 @@ Option Verb::flag(const std::string& name, bool& target, const std::string& help
 
 void Verb::footer(const std::string& text)
 {
-    app_->footer(text);
+    footer_ = text;
+    show_footer();
+}
+
+void Verb::not_as_asked_if(const std::string& what)
+{
+    not_as_asked_ = what;
+    show_footer();
+}
+
+void Verb::show_footer()
+{
+    const auto gap = footer_.empty() || footer_.ends_with('\n') ? "" : "\n";
+    const auto one = not_as_asked_.empty() ? "" : fmt::format("\n  1  {}", not_as_asked_);
+    app_->footer(fmt::format("{}{}\nExit codes:\n  0  done{}\n  2  bad usage, bad input, nothing to do, or an output that cannot be written",
+                             footer_, gap, one));
 }
 
 void Verb::run(std::function<void()> action)
@@ -234,7 +266,7 @@ Program::~Program() = default;
 
 Verb Program::verb(const std::string& name, const std::string& description)
 {
-    return Verb{*app_->add_subcommand(name, description), lists_};
+    return Verb{*app_->add_subcommand(name, description), lists_, numbers_};
 }
 
 void Program::footer(const std::string& text)
@@ -249,13 +281,28 @@ std::vector<std::string> Program::verbs() const
     return names;
 }
 
-int Program::run(std::vector<std::string> arguments)
+namespace {
+
+/// Sees that what was printed has left. @returns the exit code, `refused` if it has not.
+int with_output_written(int exit_code)
+{
+    errno = 0;
+    const bool flushed = std::fflush(stdout) == 0 && static_cast<bool>(std::cout.flush());
+    if (flushed && std::ferror(stdout) == 0) return exit_code;
+    fmt::print(stderr, "standard output cannot be written{}\n", errno != 0 ? fmt::format(": {}", std::strerror(errno)) : "");
+    return ExitCode::refused;
+}
+
+}  // namespace
+
+int Program::run_verb(std::vector<std::string> arguments)
 {
     if (!arguments.empty() && !arguments.front().starts_with("-")) {
         const auto known = verbs();
         if (std::find(known.begin(), known.end(), arguments.front()) == known.end()) {
-            fmt::print(stderr, "unknown verb '{}'.{}\nRun with --help for a list.\n", arguments.front(), suggestion(arguments.front(), known));
-            return 2;
+            fmt::print(stderr, "unknown verb '{}'{}\nRun with --help for a list.\n", arguments.front(),
+                       configuration::suggestion(arguments.front(), known));
+            return ExitCode::refused;
         }
     }
     try {
@@ -265,9 +312,18 @@ int Program::run(std::vector<std::string> arguments)
     } catch (const Exit& exit) {
         return exit.code;
     } catch (const CLI::ParseError& error) {
-        return app_->exit(error) == 0 ? 0 : 2;
+        return app_->exit(error) == 0 ? ExitCode::done : ExitCode::refused;
+    } catch (const std::system_error& error) {  // of a file or of standard output
+        fmt::print(stderr, "{}\n", error.what());
+        return ExitCode::refused;
     }
-    return 0;
+    return ExitCode::done;
+}
+
+int Program::run(std::vector<std::string> arguments)
+{
+    std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is an output that cannot be written, like a full disk
+    return with_output_written(run_verb(std::move(arguments)));
 }
 
 }  // namespace quorient::cli

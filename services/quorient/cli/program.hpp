@@ -1,7 +1,11 @@
 #pragma once
 
+#include "quorient/settings/setting.hpp"
+
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <initializer_list>
 #include <memory>
@@ -17,23 +21,47 @@ class Option;
 
 namespace quorient::cli {
 
+/// How every verb ends; the help of each verb states it.
+struct ExitCode {
+    static constexpr int done = 0;          ///< whatever was measured
+    static constexpr int not_as_asked = 1;  ///< what the verb waits for did not come, or is not as it must be
+    static constexpr int refused = 2;       ///< bad usage, bad input, nothing to do, or an output that cannot be written
+};
+
 /// Ends a verb early, after it has explained itself on stderr.
 struct Exit {
     int code;
 };
 
-/// Explains bad usage or bad input on stderr and ends the verb with exit code 2.
+/// Explains on stderr why the verb does not do what it was asked, and ends it with exit code 2.
 [[noreturn]] void fail(std::string_view explanation);
+
+/// An option that takes numbers, and which it takes.
+struct NumberOption {
+    std::string verb;
+    std::string option;
+    settings::Bounds bounds;  ///< of each number; what is not finite is always refused
+};
 
 /// One option, flag or positional argument of a verb: what may stand in it. A handle; copies mean the same option.
 class Option {
 public:
-    explicit Option(CLI::Option* option) : option_(option) {}
+    /// @param number  the program's entry for an option that takes numbers
+    explicit Option(CLI::Option* option, NumberOption* number = nullptr) : option_(option), number_(number) {}
 
     Option required() const;
     Option one_of(std::vector<std::string> words) const;
-    Option between(double lowest, double highest) const;
-    Option positive() const;
+
+    /// The values that each number of the option may have.
+    Option within(const settings::Bounds& bounds) const;
+
+    /// The same by the record of the setting.
+    template <class Settings>
+    Option within(settings::Record<Settings> record, std::string_view key) const
+    {
+        return within(std::ranges::find(record, key, &settings::Setting<Settings>::key)->bounds);
+    }
+
     Option shows_default() const;                          ///< its value before parsing stands in the help
     Option value_name(const std::string& name) const;      ///< as the help calls the value: FILE
     Option in_place_of(std::initializer_list<Option> others) const;  ///< cannot be given together with any of these
@@ -43,6 +71,7 @@ public:
 
 private:
     CLI::Option* option_;
+    NumberOption* number_;
 };
 
 /// An option that takes several numbers.
@@ -58,8 +87,11 @@ struct NumberList {
 /// wants and leaves what follows to others. Lists of words take one word each time the option is given.
 class Verb {
 public:
-    /// @param lists  the program's, where this verb adds its own
-    Verb(CLI::App& app, std::vector<NumberList>& lists) : app_(&app), lists_(&lists) {}
+    /// @param lists, numbers  the program's, where this verb adds its own
+    Verb(CLI::App& app, std::vector<NumberList>& lists, std::deque<NumberOption>& numbers) : app_(&app), lists_(&lists), numbers_(&numbers)
+    {
+        footer({});
+    }
 
     /// `Target`: std::string, double, int, unsigned, std::uint64_t, std::optional of these, or std::vector<std::string>.
     /// @param name  "--sigma" for an option, "file" for a positional argument.
@@ -75,16 +107,26 @@ public:
 
     Option flag(const std::string& name, bool& target, const std::string& help);
 
-    /// Text behind the options in the help: remarks and an example.
+    /// Text behind the options in the help: remarks and an example. The exit codes follow.
     void footer(const std::string& text);
+
+    /// When the verb ends with not_as_asked, for the help; without it, it never does.
+    void not_as_asked_if(const std::string& what);
+
     void run(std::function<void()> action);
 
     /// Whether the option was given on the command line.
     bool given(const std::string& name) const;
 
 private:
+    void show_footer();
+    Option numeric(CLI::Option* option);
+
     CLI::App* app_;
     std::vector<NumberList>* lists_;
+    std::deque<NumberOption>* numbers_;
+    std::string footer_;
+    std::string not_as_asked_;
 };
 
 /// A program of verbs, as git is.
@@ -101,14 +143,18 @@ public:
 
     std::vector<std::string> verbs() const;
     const std::vector<NumberList>& number_lists() const { return lists_; }
+    const std::deque<NumberOption>& number_options() const { return numbers_; }
 
-    /// Runs the verb of these arguments (without the program's name).
-    /// @returns the exit code: 2 on bad usage, which has been explained on stderr; else what the verb ended with.
+    /// Runs the verb of these arguments (without the program's name), and sees that its output was written.
+    /// @returns the exit code: `refused` where that was not done, which has been explained on stderr; else what the verb ended with.
     int run(std::vector<std::string> arguments);
 
 private:
+    int run_verb(std::vector<std::string> arguments);
+
     std::unique_ptr<CLI::App> app_;
     std::vector<NumberList> lists_;
+    std::deque<NumberOption> numbers_;  // options point to their own
 };
 
 }  // namespace quorient::cli

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 namespace quorient::cli {
@@ -173,11 +172,10 @@ std::string svg(const std::vector<Chart>& charts)
     return text + "</svg>\n";
 }
 
-void write_svg(const std::string& file, const std::vector<Chart>& charts)
+void write_svg(OutputFile& file, const std::vector<Chart>& charts)
 {
-    std::ofstream stream(file, std::ios::binary);
-    stream << svg(charts);
-    if (!stream.flush()) fail(fmt::format("{}: cannot be written", file));
+    file.stream() << svg(charts);
+    file.finish();
 }
 
 }  // namespace quorient::cli

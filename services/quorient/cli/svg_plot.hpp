@@ -1,5 +1,7 @@
 #pragma once
 
+#include "output_file.hpp"
+
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +33,6 @@ std::string colour(std::size_t number);
 std::string svg(const std::vector<Chart>& charts);
 
 /// Writes it, or ends the verb with the reason.
-void write_svg(const std::string& file, const std::vector<Chart>& charts);
+void write_svg(OutputFile& file, const std::vector<Chart>& charts);
 
 }  // namespace quorient::cli

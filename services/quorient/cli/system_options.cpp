@@ -1,22 +1,43 @@
 #include "system_options.hpp"
 
+#include "quorient/runtime/clock.hpp"
+#include "quorient/security/identity.hpp"
+#include "quorient/system/numbers.hpp"
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <filesystem>
 
 namespace quorient::cli {
 
-void BusOptions::add_to(Verb& verb)
+namespace {
+
+void secure(bus::Settings& settings, const std::string& directory, const std::string& name)
 {
+    const auto governance = security::find_governance(directory);
+    if (!governance) fail(governance.error());
+    const std::int64_t now_s = runtime::SystemClock{}.wall_ns() / 1'000'000'000;
+    const auto identity = security::find_identity(directory, {name, settings.vendor, settings.domain, governance->level}, now_s);
+    if (!identity) fail(fmt::format("{}", fmt::join(identity.error(), "\n")));
+    settings.security = identity->files;
+    settings.participant = identity->files.common_name;
+}
+
+}  // namespace
+
+void BusOptions::add_to(Verb& verb, const std::string& role)
+{
+    identity = role;
     verb.option("--dds", dds, "fastdds or cyclonedds").shows_default();
-    verb.option("--domain", domain, "DDS domain").shows_default();
-    verb.option("--interface", interface, "Network interface by name, address or subnet; any = the vendor's choice")
-        .shows_default();
-    verb.option("--peer", peers, "IPv4 address to look for peers at, in place of multicast (repeatable)")
-        .value_name("ADDRESS");
+    verb.option("--domain", domain, "DDS domain").within(bus::bus_record(), "domain").shows_default();
+    verb.option("--interface", interface, "Network interface by name, address or subnet; any = the vendor's choice").shows_default();
+    verb.option("--peer", peers, "IPv4 address to look for peers at, in place of multicast (repeatable)").value_name("ADDRESS");
     verb.option("--participants-per-host", participants_per_host, "That an address of --peer may have")
-        .between(1, 60)
+        .within(bus::bus_record(), "participants_per_host")
         .shows_default();
-    verb.option("--unit", unit, "Unit id").shows_default();
+    verb.option("--unit", unit, "Unit id").within(system::unit_ids).shows_default();
+    verb.option("--keys", keys, "Directory of the keys of a secured system (quorient keys)").value_name("DIR");
+    verb.option("--as", identity, "Identity to use from that directory").value_name("NAME").shows_default();
 }
 
 std::unique_ptr<bus::Bus> BusOptions::open(const std::string& participant) const
@@ -34,6 +55,7 @@ std::unique_ptr<bus::Bus> BusOptions::open(const std::string& participant) const
     settings.participants_per_host = participants_per_host;
     settings.participant = participant;
     settings.voted_lease_s = voted_lease_s;
+    if (!keys.empty()) secure(settings, keys, identity);
     auto opened = bus::open(settings);
     if (!opened) {
         fmt::print(stderr, "{}\n", opened.error());
@@ -42,17 +64,17 @@ std::unique_ptr<bus::Bus> BusOptions::open(const std::string& participant) const
     return std::move(*opened);
 }
 
-void SystemOptions::add_to(Verb& verb)
+void SystemOptions::add_to(Verb& verb, File file_is)
 {
-    verb.option("system", file, "The system file (YAML)").required().value_name("SYSTEM.yaml");
+    const auto positional = verb.option("system", file, "The system file (YAML)").value_name("SYSTEM.yaml");
+    if (file_is == File::required) positional.required();
     verb.option("--dds", dds, "DDS vendor of every process in place of the file's: fastdds or cyclonedds");
-    verb.option("--domain", domain, "DDS domain in place of the file's");
-    verb.option(
-            "--set", set,
-            "A value in place of the file's, e.g. source.duration_s=5; a file's name counts from the system file's folder (repeatable)")
+    verb.option("--domain", domain, "DDS domain in place of the file's").within(bus::bus_record(), "domain");
+    verb.option("--set", set,
+                "A value in place of the file's, e.g. source.duration_s=5; a file's name counts from the system file's folder (repeatable)")
         .value_name("KEY=VALUE");
     verb.option("--log", log, "The recording in place of the file's");
-    verb.option("--speed", speed, "Times real time");
+    verb.option("--speed", speed, "Times real time").within(settings::above_zero);
     verb.option("--fault", faults, "One more fault, e.g. axis=1,kind=scale,value=0.8,start=8,end=18 (repeatable)");
 }
 
@@ -73,9 +95,9 @@ std::vector<std::string> SystemOptions::assignments() const
     return result;
 }
 
-system::System SystemOptions::load() const
+system::Overrides SystemOptions::overrides(bool joins) const
 {
-    system::Overrides overrides{.dds = {}, .domain = domain, .process = {}, .set = assignments()};
+    system::Overrides overrides{.domain = domain, .set = assignments(), .joins = joins};
     if (!dds.empty()) {
         const auto vendor = bus::vendor_from(dds);
         if (!vendor) {
@@ -84,7 +106,22 @@ system::System SystemOptions::load() const
         }
         overrides.dds = *vendor;
     }
-    auto loaded = system::load(file, overrides);
+    return overrides;
+}
+
+system::System SystemOptions::load() const
+{
+    return load(true);
+}
+
+system::System SystemOptions::load_without_joining() const
+{
+    return load(false);
+}
+
+system::System SystemOptions::load(bool joins) const
+{
+    auto loaded = system::load(file, overrides(joins));
     if (!loaded) {
         fmt::print(stderr, "{}\n", loaded.error());
         throw Exit{2};

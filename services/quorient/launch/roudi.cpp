@@ -18,13 +18,7 @@ constexpr std::size_t endpoints_each = 8;
 std::size_t iceoryx_processes(const system::System& system)
 {
     std::size_t count = 0;
-    const auto look = [&](const system::ProcessSettings& process) { count += process.bus.transport == Transport::iceoryx ? 1 : 0; };
-    look(system.sensor.process);
-    for (const auto& lane : system.lanes) {
-        look(lane.detector.process);
-        look(lane.integrator.process);
-    }
-    for (const auto& voter : system.voters) look(voter.process);
+    for (const auto* process : system.processes()) count += process->bus.transport == Transport::iceoryx ? 1 : 0;
     return count;
 }
 

@@ -50,16 +50,15 @@ void Screen::draw(const Processes& processes)
         const auto* detector = processes.find("fdi-" + lane.name);
         const auto* integrator = processes.find("attitude-" + lane.name);
         const int restarts = (detector ? detector->restarts : 0) + (integrator ? integrator->restarts : 0);
-        text += fmt::format("{:<6}{:<12}{:<13}{:<18}{:<14}{}\n", lane.name, bus::to_string(lane.vendor),
-                            to_string(state_of(lane.verdict)),
+        text += fmt::format("{:<6}{:<12}{:<13}{:<18}{:<14}{}\n", lane.name, bus::to_string(lane.vendor), to_string(state_of(lane.verdict)),
                             lane.verdict.isolated_mask ? run_.names_of(lane.verdict.isolated_mask) : "-",
                             lane.errors.compared ? fmt::format("{:.2e}", lane.errors.final_rad) : "-", restarts);
     }
     const auto& voted = run_.voted();
-    if (system_.has_attitude())
-        text += fmt::format("{:<6}{:<12}{:<13}{:<18}{:<14}\n", "voted", "", to_string(level_of(voted.latest)),
-                            "", voted.errors.compared ? fmt::format("{:.2e}", voted.errors.final_rad) : "-");
-    int lines = (system_.has_attitude() ? 3 : 2) + static_cast<int>(run_.lanes().size());
+    if (!system_.integrators().empty())
+        text += fmt::format("{:<6}{:<12}{:<13}{:<18}{:<14}\n", "voted", "", to_string(level_of(voted.latest)), "",
+                            voted.errors.compared ? fmt::format("{:.2e}", voted.errors.final_rad) : "-");
+    int lines = (system_.integrators().empty() ? 2 : 3) + static_cast<int>(run_.lanes().size());
     for (const auto& line : latest_) {
         text += line.substr(0, 120) + "\n";
         ++lines;

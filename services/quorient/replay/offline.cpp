@@ -35,10 +35,8 @@ Offline::Offline(system::System system, evaluation::RunObserver& observer, repor
 {
     observe(observer, report);
     for (const auto& voter : system_.voters) voters_.push_back(std::make_unique<voter::VoterService>(voter, *bus_, loop_));
-    for (const auto& lane : system_.lanes) {
-        if (!system_.has_attitude()) break;
-        integrators_.push_back(std::make_unique<integrator::IntegratorService>(lane.integrator, *bus_, loop_));
-    }
+    for (const auto* integrator : system_.integrators())
+        integrators_.push_back(std::make_unique<integrator::IntegratorService>(*integrator, *bus_, loop_));
     for (const auto& lane : system_.lanes) detectors_.push_back(std::make_unique<detector::DetectorService>(lane.detector, *bus_, loop_));
 }
 
@@ -53,6 +51,7 @@ void Offline::observe(evaluation::RunObserver& observer, report::ReplayReport& r
         observer.on_verdict(message);
         report.on_verdict(message);
     });
+    loop_.on(bus_->subscribe(bus::topics::diagnosis), [&](const FaultDiagnosis& message) { report.on_diagnosis(message); });
     loop_.on(bus_->subscribe(bus::topics::attitude), [&](const AttitudeState& message) { observer.on_attitude(message); });
     loop_.on(bus_->subscribe(bus::topics::voter_output), [&](const VotedAttitude& message) {
         observer.on_voted(message);

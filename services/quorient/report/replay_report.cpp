@@ -2,7 +2,9 @@
 
 #include "cli/json_output.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"
+#include "quorient/messages/diagnosis_text.hpp"
 #include "quorient/messages/meaning.hpp"
+#include "quorient/messages/words.hpp"
 
 namespace quorient::report {
 
@@ -18,12 +20,19 @@ bool seen(const FaultVerdict& verdict)
     return sees_fault(verdict);
 }
 
+bool names_nobody(VerdictState state)
+{
+    return state == VerdictState::suspect || state == VerdictState::ambiguous || state == VerdictState::blind ||
+           state == VerdictState::provisional || state == VerdictState::saturated;
+}
+
 }  // namespace
 
 void ReplayReport::on_description(const ClusterDescription& description)
 {
-    if (!isolated_.empty()) return;
-    isolated_.resize(system_.lanes.size(), 0);
+    if (!lanes_.empty()) return;
+    lanes_.resize(system_.lanes.size());
+    description_ = description;
     const auto cluster = geometry::make_cluster(description);
     for (const auto& spec : system_.sensor.source.scenario.faults) {
         const auto resolved = cluster ? simulation::resolve(spec, *cluster) : tl::make_unexpected(cluster.error());
@@ -33,9 +42,16 @@ void ReplayReport::on_description(const ClusterDescription& description)
 
 void ReplayReport::on_verdict(const FaultVerdict& verdict)
 {
-    for (std::size_t lane = 0; lane < isolated_.size(); ++lane) {
+    for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
         if (system_.lanes[lane].detector.detector == verdict.detector) judge(lane, verdict);
     }
+}
+
+/// A diagnosis that says nothing any more does not take away what was found before.
+void ReplayReport::on_diagnosis(const FaultDiagnosis& diagnosis)
+{
+    for (std::size_t lane = 0; lane < lanes_.size(); ++lane)
+        if (system_.lanes[lane].detector.detector == diagnosis.detector) lanes_[lane].diagnosis = diagnosis;
 }
 
 void ReplayReport::judge(std::size_t lane, const FaultVerdict& verdict)
@@ -52,10 +68,13 @@ void ReplayReport::judge(std::size_t lane, const FaultVerdict& verdict)
             reaction.isolated = verdict.isolated_mask;
         }
     }
-    const AxisMask newly = verdict.isolated_mask & ~isolated_[lane];
-    isolated_[lane] = verdict.isolated_mask;
+    Lane& its = lanes_[lane];
+    const AxisMask newly = verdict.isolated_mask & ~its.isolated;
+    its.isolated = verdict.isolated_mask;
     // A detector of instruments rightly takes the whole instrument of a faulty axis.
-    if (newly != 0 && (newly & faulty) == 0) false_isolations_.push_back({lane, time_s, newly});
+    if (newly != 0) isolations_.push_back({lane, time_s, newly, (newly & faulty) != 0});
+    if (names_nobody(state_of(verdict)) && its.time_s > 0) its.undecided_s[state_of(verdict)] += time_s - its.time_s;
+    its.time_s = time_s;
 }
 
 void ReplayReport::on_voted(const VotedAttitude& voted)
@@ -85,9 +104,32 @@ nlohmann::ordered_json ReplayReport::faults() const
 nlohmann::ordered_json ReplayReport::false_isolations() const
 {
     auto list = nlohmann::ordered_json::array();
-    for (const auto& entry : false_isolations_)
-        list.push_back({{"lane", system_.lanes[entry.lane].name}, {"time_s", entry.time_s}, {"axes", cli::axes_json(entry.axes)}});
+    for (const auto& entry : isolations_)
+        if (!faults_.empty() && !entry.is_stated)
+            list.push_back({{"lane", system_.lanes[entry.lane].name}, {"time_s", entry.time_s}, {"axes", cli::axes_json(entry.axes)}});
     return list;
+}
+
+nlohmann::ordered_json ReplayReport::isolations() const
+{
+    auto list = nlohmann::ordered_json::array();
+    for (const auto& entry : isolations_)
+        list.push_back({{"lane", system_.lanes[entry.lane].name},
+                        {"time_s", entry.time_s},
+                        {"axes", cli::axes_json(entry.axes)},
+                        {"names", axis_names(description_, entry.axes)},
+                        {"diagnosis", diagnoses_text(lanes_[entry.lane].diagnosis, description_, entry.axes)}});
+    return list;
+}
+
+nlohmann::ordered_json ReplayReport::undecided_s() const
+{
+    auto by_lane = nlohmann::ordered_json::object();
+    for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
+        auto& entry = by_lane[system_.lanes[lane].name] = nlohmann::ordered_json::object();
+        for (const auto& [state, seconds] : lanes_[lane].undecided_s) entry[std::string(to_string(state))] = seconds;
+    }
+    return by_lane;
 }
 
 }  // namespace quorient::report

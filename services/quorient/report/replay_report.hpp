@@ -1,11 +1,12 @@
 #pragma once
 
 #include "quorient/messages/cluster_description.hpp"
+#include "quorient/messages/fault_diagnosis.hpp"
 #include "quorient/messages/fault_verdict.hpp"
 #include "quorient/messages/voted_attitude.hpp"
 #include "quorient/system/system.hpp"
 
-#include <array>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -13,17 +14,26 @@
 
 namespace quorient::report {
 
-/// What each lane made of each injected fault, and what it blamed without cause. Times are the log's own.
+/// What each lane made of each stated fault, and all that it isolated. Times are the log's own.
 class ReplayReport {
 public:
     explicit ReplayReport(const system::System& system) : system_(system) {}
 
     void on_description(const ClusterDescription& description);
     void on_verdict(const FaultVerdict& verdict);
+    void on_diagnosis(const FaultDiagnosis& diagnosis);
     void on_voted(const VotedAttitude& voted);
 
     nlohmann::ordered_json faults() const;
+
+    /// Isolations by lane, with the names of their axes and what is wrong with them, as far as it is known at the end.
+    nlohmann::ordered_json isolations() const;
+
+    /// Those of them that contradict a truth: empty where no fault was stated, since a log as it is may well hold one.
     nlohmann::ordered_json false_isolations() const;
+
+    /// The time that each lane spent in verdicts that name nobody [s]: "SUSPECT", "AMBIGUOUS", "BLIND", "PROVISIONAL", "SATURATED".
+    nlohmann::ordered_json undecided_s() const;
 
     /// The last attitude that a frame stands behind.
     const std::optional<VotedAttitude>& final_attitude() const { return final_attitude_; }
@@ -38,18 +48,26 @@ private:
         simulation::FaultSpec spec;
         std::vector<Reaction> lanes;
     };
-    struct FalseIsolation {
+    struct Isolation {
         std::size_t lane;
         double time_s;
         AxisMask axes;
+        bool is_stated;  ///< a stated fault had begun in one of these axes
+    };
+    struct Lane {
+        AxisMask isolated = 0;
+        FaultDiagnosis diagnosis;
+        std::map<VerdictState, double> undecided_s;
+        double time_s = 0;  ///< of the newest verdict
     };
 
     void judge(std::size_t lane, const FaultVerdict& verdict);
 
     const system::System& system_;
     std::vector<Fault> faults_;
-    std::vector<FalseIsolation> false_isolations_;
-    std::vector<AxisMask> isolated_;  // by lane
+    std::vector<Isolation> isolations_;
+    std::vector<Lane> lanes_;
+    ClusterDescription description_;
     std::optional<VotedAttitude> final_attitude_;
 };
 

@@ -60,7 +60,7 @@ nlohmann::ordered_json errors_json(const evaluation::Errors& errors)
 
 std::string summary_text(const system::System& system, const evaluation::RunObserver& run)
 {
-    if (!system.has_attitude()) return vessel_text(system, run);
+    if (system.integrators().empty()) return vessel_text(system, run);
     std::string text = fmt::format("{}: {} frames\n", system.name, run.truth_frames());
     if (run.fault_began())
         text += fmt::format("fault    {} from {:.3f} s{}\n", run.names_of(run.faulty()), run.time_s(*run.fault_began()),
@@ -83,7 +83,7 @@ std::string summary_text(const system::System& system, const evaluation::RunObse
 nlohmann::ordered_json summary_json(const system::System& system, const evaluation::RunObserver& run)
 {
     nlohmann::ordered_json json;
-    if (!system.has_attitude()) {
+    if (system.integrators().empty()) {
         json = vessel_json(system, run);
         json["unmet"] = unmet(system, run);
         return json;
@@ -118,6 +118,8 @@ std::vector<std::string> unmet(const system::System& system, const evaluation::R
 {
     const auto& expect = system.expectations;
     std::vector<std::string> failures = unmet_faults(system, run);
+    const auto is_idle = [](const evaluation::LaneRecord& lane) { return lane.frames == 0 && lane.verdicts == 0; };
+    if (run.truth_frames() == 0 && std::ranges::all_of(run.lanes(), is_idle)) failures.emplace_back("no frame came");
     if (!expect.any()) return failures;
     if ((expect.within_frames || (expect.isolated && *expect.isolated != 0)) && !run.fault_began())
         failures.emplace_back("the fault never took effect");

@@ -134,8 +134,8 @@ TEST_F(AssessVerb, explains_bad_usage_and_exits_2)
     };
     EXPECT_THAT(explanation("--layout cone-6 --method mean --bound 1"), HasSubstr("--bound means nothing to method mean"));
     EXPECT_THAT(explanation("--method mean --tolerance 1"), HasSubstr("--layout"));
-    EXPECT_THAT(explanation("--layout cone-6 --method glt --sigma -1"), HasSubstr("sigma must be finite and above 0"));
-    EXPECT_THAT(explanation("--layout cone-6 --method glt --sigma nan"), HasSubstr("sigma must be finite and above 0"));
+    EXPECT_THAT(explanation("--layout cone-6 --method glt --sigma -1"), HasSubstr("--sigma: must be above 0, got -1"));
+    EXPECT_THAT(explanation("--layout cone-6 --method glt --sigma nan"), HasSubstr("--sigma: must be finite, got nan"));
     EXPECT_THAT(explanation("--layout cone-5 --method voting --tolerance 1"), HasSubstr("at least 6 axes"));
     EXPECT_THAT(explanation("--layout cone-6 --method mean --tolerance 1", "1,2,3\n"), HasSubstr(":1:"));
     EXPECT_THAT(explanation("--layout cone-6 --method mean --tolerance 1", "1,2,3,inf,5,6\n"), HasSubstr("'inf' is not allowed"));

@@ -57,6 +57,27 @@ TEST(Csv, takes_a_first_row_without_numbers_as_header)
     EXPECT_THAT(read("0,1\n").header, testing::IsEmpty());
 }
 
+TEST(Csv, takes_no_bad_row_of_numbers_for_a_header)
+{
+    EXPECT_EQ(read("1;2;3\n").error, "in.csv:1:1: '1;2;3' is not a number");
+    EXPECT_EQ(read("0.1x -.2y\n").error, "in.csv:1:1: '0.1x' is not a number");
+    EXPECT_EQ(read("gyro_x,2nd\n1,2\n").error, "in.csv:1:1: 'gyro_x' is not a number") << "a header has words only";
+}
+
+TEST(Csv, says_what_there_was_in_place_of_rows)
+{
+    const auto nothing_in = [](const std::string& text) {
+        std::istringstream input(text);
+        CsvReader reader(input, "in.csv", {.columns = 3});
+        CsvRow row;
+        EXPECT_EQ(reader.next(row), (tl::expected<bool, std::string>(false)));
+        return reader.nothing();
+    };
+    EXPECT_EQ(nothing_in(""), "in.csv: expected a row of 3 numbers, there is nothing at all");
+    EXPECT_EQ(nothing_in("# a\n\n"), "in.csv: expected a row of 3 numbers, there is only comments and blank lines (2)");
+    EXPECT_EQ(nothing_in("x,y,z\n"), "in.csv: expected a row of 3 numbers, there is only a header of 3 names");
+}
+
 TEST(Csv, takes_only_the_first_row_as_header)
 {
     EXPECT_EQ(read("a,b\nc,d\n").error, "in.csv:2:1: 'c' is not a number");

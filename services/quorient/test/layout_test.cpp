@@ -61,10 +61,19 @@ TEST(LayoutVerb, leaves_axes_out)
     const auto object = run("cone-6 --without 1,0 --json").object();
     EXPECT_EQ(object["axes"].size(), 4U);
     EXPECT_EQ(object["instrument"], json({2, 3, 4, 5}));
+    EXPECT_EQ(object["axis"], json({2, 3, 4, 5}));
     EXPECT_NEAR(object["eigenvalues"][0], 3, 1e-12);
     EXPECT_NEAR(object["condition"], 6, 1e-12);
     EXPECT_EQ(object["detectable"], 1);
     EXPECT_EQ(object["isolable"], 0);
+}
+
+TEST(LayoutVerb, keeps_the_numbers_of_the_axes_that_are_left)
+{
+    const std::string text = run("cone-6 --without 1,3").out;
+    for (const char* row : {"\n   0          0 ", "\n   2          2 ", "\n   4          4 ", "\n   5          5 "}) EXPECT_THAT(text, HasSubstr(row));
+    EXPECT_THAT(text, testing::Not(HasSubstr("\n   1 ")));
+    EXPECT_THAT(text, testing::Not(HasSubstr("\n   3 ")));
 }
 
 TEST(LayoutVerb, writes_null_for_what_is_undefined)

@@ -29,7 +29,7 @@ public:
         : bus_(hub.open()), loop_(*bus_, clock, never_stop_), node_(settings(service), *bus_, loop_)
     {
         loop_.on(bus_->subscribe(bus::topics::command), [this](const FaultCommand&) { ++words; });
-        node_.on_order([this, answer](const FaultCommand& order) {
+        node_.on_order({CommandAction::readmit}, [this, answer](const FaultCommand& order) {
             ++obeyed;
             if (!mute) node_.report(answer, Severity::info, {}, order.axes, "readmits axis 1", order.request);
         });

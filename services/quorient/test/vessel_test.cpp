@@ -114,6 +114,20 @@ TEST(VesselVerb, prints_the_run_beside_the_recomputed_figures)
     EXPECT_EQ(compared, 14);
 }
 
+TEST(VesselVerb, prints_the_same_figures_as_json)
+{
+    const Output output = run("--table --json");
+    EXPECT_EQ(output.exit_code, 0) << output.error;
+    const auto table = json::parse(output.out);
+    ASSERT_EQ(table["gains"].size(), 4U);
+    for (const auto& observer : table["gains"])
+        for (std::size_t entry = 0; entry < 4; ++entry)
+            EXPECT_NEAR(observer["gain"][entry].get<double>(), observer["recomputed"][entry].get<double>(), 1e-7) << observer["name"];
+    EXPECT_EQ(table["windows"].size(), 18U);
+    EXPECT_EQ(table["named_percent"].size(), 2U);
+    EXPECT_EQ(table["false_alarms"]["blind"], 0);
+}
+
 TEST(VesselVerb, draws_the_papers_figures)
 {
     const auto file = std::filesystem::path(testing::TempDir()) / "vessel_test.svg";

@@ -96,7 +96,8 @@ void run(const AssessOptions& options, const Verb& verb)
     bool as_expected = true;
     CsvRow row;
     fdi::Assessment assessment;
-    for (std::size_t number = 0;; ++number) {
+    std::size_t number = 0;
+    for (;; ++number) {
         const auto more = input->next(row);
         if (!more) fail(more.error());
         if (!*more) break;
@@ -107,29 +108,39 @@ void run(const AssessOptions& options, const Verb& verb)
         fmt::print("{}\n", dump(object));
         as_expected = as_expected && (options.check.empty() || options.check == name_of(assessment.outcome));
     }
-    if (!as_expected) throw Exit{1};
+    if (number == 0) fail(input->nothing());
+    if (!as_expected) throw Exit{ExitCode::not_as_asked};
 }
 
 void add_method_options(Verb& verb, AssessOptions& options)
 {
     fdi::DetectorSettings& settings = options.settings;
+    const auto record = fdi::detector_record();
     std::vector<std::string> names;
     for (const fdi::Method* method : offered()) names.emplace_back(method->word);
     verb.option("--method", settings.method, "how to judge a row").required().one_of(names);
     verb.option("--tolerance", settings.tolerance,
                     "invariants: of |v'z|, v of unit norm; voting: of a difference's norm; mean: of "
-                    "sqrt(SSE); extrapolation, vector: of |v'z|");
-    verb.option("--sigma", settings.sigma, "standard deviation of one axis's noise");
-    verb.option("--pfa", settings.pfa, "probability of a false alarm per row (default 1e-6)");
-    verb.option("--bound", settings.bound, "largest regular error of one axis");
+                    "sqrt(SSE); extrapolation, vector: of |v'z|")
+        .within(record, "tolerance");
+    verb.option("--sigma", settings.sigma, "standard deviation of one axis's noise")
+        .within(record, "sigma");
+    verb.option("--pfa", settings.pfa, "probability of a false alarm per row (default 1e-6)")
+        .within(record, "pfa");
+    verb.option("--bound", settings.bound, "largest regular error of one axis")
+        .within(record, "bound");
     verb.option("--threshold", settings.threshold,
-                    "A: errors beyond it are faults (default: the least with which regular errors are never undecided)");
+                    "A: errors beyond it are faults (default: the least with which regular errors are never undecided)")
+        .within(record, "threshold");
     verb.option("--max-faults", settings.max_faults,
-                    "most simultaneous faults that are looked for (default 2, as far as the axes allow)");
+                    "most simultaneous faults that are looked for (default 2, as far as the axes allow)")
+        .within(record, "max_faults");
     verb.option("--margin", settings.margin,
-                    "explanations that differ by less are ambiguous, in units of sigma^2 (default: subset 9, else 0)");
+                    "explanations that differ by less are ambiguous, in units of sigma^2 (default: subset 9, else 0)")
+        .within(record, "margin");
     verb.option("--doubt", settings.doubt,
-                    "subset: share of right isolations held back as suspect, to rule out one more small fault (default none)");
+                    "subset: share of right isolations held back as suspect, to rule out one more small fault (default none)")
+        .within(record, "doubt");
     verb.numbers("--direction", options.direction, 3, "guaranteed: also the interval along this body vector, as in 0,0,1");
     verb.flag("--instruments", settings.instruments, "subset: a fault takes a whole instrument");
     verb.flag("--relaxed", settings.relaxed, "invariants: where no pattern fits, leave out what the best quadruple leaves out");
@@ -151,6 +162,7 @@ void add_assess(Program& program)
         "  echo -393.04,1075.35,-612.73,-593.11,1254.79,-761.19 |\n"
         "    quorient assess --method guaranteed --layout guaranteed-cone --bound 1 --threshold 10\n";
     verb.footer(footer);
+    verb.not_as_asked_if("--check: a row has another outcome");
 
     const auto options = std::make_shared<AssessOptions>();
     add_cluster_options(verb, options->choice);

@@ -3,6 +3,7 @@
 #include "cli/program.hpp"
 #include "quorient/calibration/gated_terms.hpp"
 #include "cli/json_output.hpp"
+#include "cli/output_file.hpp"
 #include "quorient/calibration/log_sample.hpp"
 #include "quorient/calibration/motion_level.hpp"
 #include "quorient/recording/merge.hpp"
@@ -11,8 +12,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace quorient::cli {
@@ -25,6 +26,7 @@ struct CalibrateOptions {
     std::string out;
     std::string plot;
     calibration::RestSettings rest;
+    bool force = false;
     bool json = false;
 };
 
@@ -68,6 +70,9 @@ ClusterDescription nominal_cluster(const CalibrateOptions& options, const record
 
 void run(const CalibrateOptions& options)
 {
+    std::optional<OutputFile> out, plot;
+    if (!options.out.empty()) out.emplace(options.out, options.force);
+    if (!options.plot.empty()) plot.emplace(options.plot, options.force);
     const std::vector<std::filesystem::path> files(options.logs.begin(), options.logs.end());
     const auto merged = recording::open_logs(files);
     if (!merged) fail(merged.error());
@@ -86,12 +91,11 @@ void run(const CalibrateOptions& options)
     const auto& statistics = reader.statistics();
     if (options.json) fmt::print("{}\n", dump(calibration_json(*calibration, samples, statistics)));
     else fmt::print("{}", calibration_text(*calibration, samples, statistics));
-    if (!options.out.empty()) {
-        std::ofstream file(options.out, std::ios::binary);
-        file << calibration::to_yaml(calibration->cluster);
-        if (!file.flush()) fail(fmt::format("{}: cannot be written", options.out));
+    if (out) {
+        out->stream() << calibration::to_yaml(calibration->cluster);
+        out->finish();
     }
-    if (!options.plot.empty()) write_svg(options.plot, calibration_charts(*calibration));
+    if (plot) write_svg(*plot, calibration_charts(*calibration));
 }
 
 }  // namespace
@@ -107,15 +111,16 @@ void add_calibrate(Program& program)
         "  quorient calibrate exp_1/data.bin --out cluster.yaml --plot calibration.svg\n");
     const auto options = std::make_shared<CalibrateOptions>();
     verb.arguments("log", options->logs,
-                     "MIMU4444 binary, Xsens DOT CSV, or CSV as quorient simulate writes it; several of one motion are merged")
+                     "any log of gyros: ArduPilot, PX4, ROS 2 bag, CSV, MIMU4444, Xsens DOT; several of one motion are merged")
         .value_name("LOG ...")
         .required();
     add_cluster_options(verb, options->choice);
     verb.option("--out", options->out, "cluster file to write (YAML)");
     verb.option("--plot", options->plot, "Allan deviation and motion noise, as SVG");
     verb.option("--rest-s", options->rest.shortest_s, "shortest rest that counts, s")
-        .shows_default()
-        .positive();
+        .within(settings::above_zero)
+        .shows_default();
+    add_force(verb, options->force);
     verb.flag("--json", options->json, "one JSON object");
     verb.run([options] { run(*options); });
 }

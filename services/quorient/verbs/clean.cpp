@@ -152,7 +152,7 @@ int clean(const CleanOptions& options)
             fmt::print("{}\n", file.string());
         }
     }
-    return kept == 0 ? 0 : 1;
+    return kept == 0 ? ExitCode::done : ExitCode::not_as_asked;
 }
 
 }  // namespace
@@ -164,7 +164,8 @@ void add_clean(Program& program)
     verb.flag("--dry-run", options->dry_run, "Only print what would be removed");
     verb.footer(
         "Removes files of this user that no running process uses: Fast DDS's and iceoryx's in /dev/shm, iceoryx's sockets in /tmp, and the "
-        "heartbeats in the run directory; logs stay. What is in use is kept and named, exit code 1.\nExample:\n  quorient clean --dry-run");
+        "heartbeats in the run directory; logs stay. What is in use is kept and named.\nExample:\n  quorient clean --dry-run");
+    verb.not_as_asked_if("something was kept");
     verb.run([options] {
         if (const int exit_code = clean(*options); exit_code != 0) throw Exit{exit_code};
     });

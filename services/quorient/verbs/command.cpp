@@ -62,10 +62,11 @@ void add_inject(Program& program)
 {
     auto verb = program.verb("inject", "Break an axis of a running unit; times count from now");
     auto options = std::make_shared<CommandOptions>();
-    options->bus.add_to(verb);
+    options->bus.add_to(verb, "operator");
     verb.option("fault", options->fault, "axis=1,kind=scale,value=0.8,start=0,end=10");
     verb.flag("--clear", options->clear, "Take all faults back instead");
     verb.footer("Example:\n  quorient inject axis=1,kind=bias,value=0.1,start=0");
+    verb.not_as_asked_if("a service refused the order, or did not answer");
     verb.run([options] { finish(send(*options, inject_command(*options))); });
 }
 
@@ -73,11 +74,12 @@ void add_readmit(Program& program)
 {
     auto verb = program.verb("readmit", "Trust an isolated axis again");
     auto options = std::make_shared<CommandOptions>();
-    options->bus.add_to(verb);
-    verb.numbers("--axis", options->axes, 0, "0-based; repeatable").required().between(0, static_cast<int>(max_axes) - 1);
+    options->bus.add_to(verb, "operator");
+    verb.numbers("--axis", options->axes, 0, "0-based; repeatable").required().within({.lowest = 0, .highest = max_axes - 1});
     verb.footer(
         "Refused while the other axes still contradict it, where a detector could not name it again (four axes; a vessel's channels).\n"
         "Example:\n  quorient readmit --axis 1");
+    verb.not_as_asked_if("a service refused the order, or did not answer");
     verb.run([options] {
         FaultCommand command;
         command.action = octet(CommandAction::readmit);
@@ -90,9 +92,10 @@ void add_reset(Program& program)
 {
     auto verb = program.verb("reset", "State the attitude anew, e.g. after LOST: all lanes take it at one frame");
     auto options = std::make_shared<CommandOptions>();
-    options->bus.add_to(verb);
+    options->bus.add_to(verb, "operator");
     verb.numbers("--attitude", options->attitude, 4, "w,x,y,z: body to reference at the newest frame").required();
     verb.footer("Example:\n  quorient reset --attitude 1,0,0,0");
+    verb.not_as_asked_if("a service refused the order, or did not answer");
     verb.run([options] {
         FaultCommand command;
         command.action = octet(CommandAction::reset_attitude);

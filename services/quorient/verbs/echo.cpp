@@ -1,4 +1,5 @@
 #include "cli/message_json.hpp"
+#include "cli/message_words.hpp"
 #include "quorient/bus/topics.hpp"
 #include "quorient/runtime/event_loop.hpp"
 #include "quorient/runtime/signals.hpp"
@@ -27,17 +28,21 @@ std::string full_name(const std::string& topic)
     return topic.find('/') == std::string::npos ? "quorient/" + topic : topic;
 }
 
+/// @returns false where standard output takes no more.
 template <class Message>
-void show(const Message& message, bool json)
+bool show(const Message& message, bool json)
 {
     const auto fields = message_json(message);
     if (json) {
         fmt::print("{}\n", dump(fields));
     } else {
-        for (const auto& [name, value] : fields.items()) fmt::print("{}: {}\n", name, dump(value));
+        for (const auto& [name, value] : fields.items()) {
+            const auto word = word_in(message, name);
+            fmt::print("{}: {}{}\n", name, dump(value), word.empty() ? std::string{} : fmt::format(" ({})", word));
+        }
         fmt::print("---\n");
     }
-    std::fflush(stdout);
+    return std::fflush(stdout) == 0;
 }
 
 int echo(const EchoOptions& options)
@@ -54,9 +59,8 @@ int echo(const EchoOptions& options)
         if (full_name(options.topic) != topic.spec.name) return;
         known = true;
         loop.on(bus->subscribe(topic), [&](const Message& message) {
-            if (options.count != 0 && shown == options.count) return;
-            show(message, options.json);
-            if (++shown == options.count) loop.quit(0);
+            if (message.unit != options.bus.unit || (options.count != 0 && shown == options.count)) return;
+            if (!show(message, options.json) || ++shown == options.count) loop.quit(ExitCode::done);
         });
     };
     std::apply([&](const auto&... topic) { (subscribe_if_named(topic), ...); }, bus::topics::all);
@@ -65,7 +69,7 @@ int echo(const EchoOptions& options)
         return 2;
     }
     if (options.timeout_s > 0)
-        loop.timer([&] { loop.quit(1); }).set(clock.steady_ns() + static_cast<std::int64_t>(options.timeout_s * 1e9));
+        loop.timer([&] { loop.quit(ExitCode::not_as_asked); }).set(clock.steady_ns() + static_cast<std::int64_t>(options.timeout_s * 1e9));
     return loop.run();
 }
 
@@ -78,12 +82,14 @@ void add_echo(Program& program)
     options->bus.add_to(verb);
     verb.option("topic", options->topic, "quorient/voter_output, or voter_output").required();
     verb.option("--count", options->count, "End after so many samples; 0 = go on");
-    verb.option("--timeout", options->timeout_s, "End with exit code 1 after so many seconds; 0 = go on");
+    verb.option("--timeout", options->timeout_s, "End with exit code 1 after so many seconds; 0 = go on").within(settings::not_negative).value_name("S");
     verb.option("--lease", options->bus.voted_lease_s, "Of `voted`, if above max(50 ms, 3 intervals) in the system file")
+        .within(settings::above_zero)
         .value_name("S")
         .shows_default();
     verb.flag("--json", options->json, "One JSON object per sample");
     verb.footer("Example:\n  quorient echo voter_output --count 3 --json");
+    verb.not_as_asked_if("--timeout ended before --count samples had come");
     verb.run([options] {
         if (const int exit_code = echo(*options); exit_code != 0) throw Exit{exit_code};
     });

@@ -34,8 +34,9 @@ void add_health(Program& program)
     auto verb = program.verb("health", "Exit 0 if a service of this host handles frames, without joining DDS");
     auto options = std::make_shared<HealthOptions>();
     verb.option("name", options->name, "The process's name in the system file").required();
-    verb.option("--fresh", options->fresh_s, "A heartbeat older than this is stale").value_name("S").shows_default();
+    verb.option("--fresh", options->fresh_s, "A heartbeat older than this is stale").within(settings::above_zero).value_name("S").shows_default();
     verb.footer("Example:\n  quorient health fdi-a");
+    verb.not_as_asked_if("there is no heartbeat, or a stale one");
     verb.run([options] {
         if (const int exit_code = health(*options); exit_code != 0) throw Exit{exit_code};
     });

@@ -1,13 +1,13 @@
 #include "../launch/processes.hpp"
 #include "../launch/roudi.hpp"
 #include "../launch/screen.hpp"
-#include "quorient/evaluation/run_observer.hpp"
-#include "report/summary.hpp"
 #include "cli/json_output.hpp"
+#include "cli/system_options.hpp"
+#include "quorient/evaluation/run_observer.hpp"
 #include "quorient/runtime/event_loop.hpp"
 #include "quorient/runtime/heartbeat.hpp"
 #include "quorient/runtime/signals.hpp"
-#include "cli/system_options.hpp"
+#include "report/summary.hpp"
 #include "verbs.hpp"
 
 #include <fmt/format.h>
@@ -61,15 +61,26 @@ std::string program(const char* name)
     return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / name).string();
 }
 
+const char* service_of(ServiceRole role)
+{
+    switch (role) {
+        case ServiceRole::sensor:
+            return "quorient-sensor";
+        case ServiceRole::detector:
+            return "quorient-fdi";
+        case ServiceRole::integrator:
+            return "quorient-attitude";
+        case ServiceRole::monitor:
+            return "quorient-monitor";
+        default:
+            return "quorient-voter";
+    }
+}
+
 std::vector<Started> processes_of(const system::System& system)
 {
     std::vector<Started> all;
-    for (const auto& voter : system.voters) all.push_back({"quorient-voter", voter.process.node.name});
-    for (const auto& lane : system.lanes) {
-        if (system.has_attitude()) all.push_back({"quorient-attitude", lane.integrator.process.node.name});
-        all.push_back({"quorient-fdi", lane.detector.process.node.name});
-    }
-    all.push_back({"quorient-sensor", system.sensor.process.node.name});
+    for (const auto* process : system.processes()) all.push_back({service_of(process->node.role), process->node.name});
     return all;
 }
 
@@ -98,19 +109,23 @@ void add_processes(const std::vector<Started>& chosen, const SystemOptions& opti
     }
 }
 
-/// Those of these processes that run already: their events, which late joiners get, arrive while this waits.
+/// Those of these processes that run already, as far as they show themselves while this waits: by a status, or by events of before.
 std::set<std::string> already_running(const std::vector<Started>& chosen, std::uint32_t unit, bus::Bus& bus)
 {
     constexpr auto discovery = std::chrono::milliseconds{500};
     auto events = bus.subscribe(bus::topics::event);
+    auto statuses = bus.subscribe(bus::topics::status);
     std::set<std::string> running;
+    const auto add = [&](std::uint32_t from_unit, std::string_view name) {
+        if (from_unit == unit && std::ranges::find(chosen, name, &Started::name) != chosen.end()) running.emplace(name);
+    };
     HealthEvent event;
+    ServiceStatus status;
     for (const auto deadline = std::chrono::steady_clock::now() + discovery; std::chrono::steady_clock::now() < deadline;
-         bus.wait(second_ns / 50))
-        while (events.take(event)) {
-            const std::string_view source = text_of(event.source_name);
-            if (event.unit == unit && std::ranges::find(chosen, source, &Started::name) != chosen.end()) running.emplace(source);
-        }
+         bus.wait(second_ns / 50)) {
+        while (events.take(event)) add(event.unit, text_of(event.source_name));
+        while (statuses.take(status)) add(status.unit, text_of(status.name));
+    }
     return running;
 }
 
@@ -222,17 +237,20 @@ int launch_system(const LaunchOptions& options)
 
 void add_launch(Program& program)
 {
-    auto verb = program.verb(
-        "launch", "Start the processes of a system file, restart those that die, show a live table, end with a summary");
+    auto verb =
+        program.verb("launch", "Start the processes of a system file, restart those that die, show a live table, end with a summary");
     auto options = std::make_shared<LaunchOptions>();
     options->system.add_to(verb);
-    verb.option("--duration", options->duration_s, "Stop after so many seconds; else when the source ends").value_name("S");
+    verb.option("--duration", options->duration_s, "Stop after so many seconds; else when the source ends")
+        .within(settings::above_zero)
+        .value_name("S");
     verb.option("--without", options->without, "Do not start this process: it runs elsewhere, or a program of yours stands for it (repeatable)")
         .value_name("NAME");
     verb.flag("--join", options->join, "Start although processes of these names run on this domain already");
     verb.flag("--json", options->json, "The summary as JSON, nothing else on stdout");
     verb.footer(
-        "Exit code 1 if the file's `expect` is not met.\nExample:\n  quorient launch deploy/configurations/demo.yaml --dds fastdds");
+        "Example:\n  quorient launch deploy/configurations/demo.yaml --dds fastdds");
+    verb.not_as_asked_if("the file's `expect` is not met, no frame came, or a process could not be kept alive");
     verb.run([options] {
         if (const int exit_code = launch_system(*options); exit_code != 0) throw Exit{exit_code};
     });

@@ -20,7 +20,7 @@ constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 struct Report {
     geometry::Axes axes;
-    std::vector<std::size_t> instrument;
+    std::vector<std::size_t> axis, instrument;
     geometry::Accuracy accuracy{Eigen::Vector3d::Constant(undefined), undefined, undefined, undefined};
     double minimum_angle_deg = undefined;
     geometry::AxisMatrix parity_matrix, parity_equations, isolation_index;
@@ -34,7 +34,10 @@ Report report_on(const geometry::SensorCluster& cluster, AxisMask used)
     Report report;
     report.axes = geometry::select(cluster.axes, used);
     for (std::size_t axis = 0; axis < cluster.size(); ++axis)
-        if (has_axis(used, axis)) report.instrument.push_back(cluster.instrument[axis]);
+        if (has_axis(used, axis)) {
+            report.axis.push_back(axis);
+            report.instrument.push_back(cluster.instrument[axis]);
+        }
 
     const geometry::ParitySpace space(report.axes);
     if (const auto accuracy = geometry::accuracy(report.axes)) report.accuracy = *accuracy;
@@ -74,6 +77,7 @@ Json layout_json(const std::string& name, const geometry::SensorCluster& cluster
     Json json;
     json["name"] = name;
     json["axes"] = matrix_json(report.axes);
+    if (used != cluster.all()) json["axis"] = report.axis;
     json["instrument"] = report.instrument;
     json["eigenvalues"] = vector_json(report.accuracy.eigenvalues);
     json["trace"] = report.accuracy.trace;
@@ -97,9 +101,11 @@ std::string layout_text(const std::string& name, const geometry::SensorCluster& 
     const Report report = report_on(cluster, used);
     std::string text = fmt::format("{}: {} axes\n", name, report.axes.rows());
     fmt::format_to(std::back_inserter(text), "{:>4} {:>10} {:>10}{:>10}{:>10}\n", "axis", "instrument", "x", "y", "z");
-    for (Eigen::Index axis = 0; axis < report.axes.rows(); ++axis)
-        fmt::format_to(std::back_inserter(text), "{:>4} {:>10} {}{}{}\n", axis, report.instrument[static_cast<std::size_t>(axis)],
-                       cell(report.axes(axis, 0)), cell(report.axes(axis, 1)), cell(report.axes(axis, 2)));
+    for (std::size_t row = 0; row < report.axis.size(); ++row) {
+        const auto axis = report.axes.row(static_cast<Eigen::Index>(row));
+        fmt::format_to(std::back_inserter(text), "{:>4} {:>10} {}{}{}\n", report.axis[row], report.instrument[row], cell(axis(0)),
+                       cell(axis(1)), cell(axis(2)));
+    }
 
     fmt::format_to(std::back_inserter(text), "\naccuracy, (H'H)^-1 for unit noise\n  eigenvalues {}{}{}\n",
                    cell(report.accuracy.eigenvalues(0)), cell(report.accuracy.eigenvalues(1)), cell(report.accuracy.eigenvalues(2)));

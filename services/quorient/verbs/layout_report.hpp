@@ -8,7 +8,7 @@
 namespace quorient::cli {
 
 /// All figures of a cluster with some axes left out, in the fields of the verb's contract (cli.md); undefined ones are null.
-/// Axes are renumbered from 0, instruments keep their numbers.
+/// Axes and instruments keep their numbers: `axis` has those of the rows where some are left out.
 Json layout_json(const std::string& name, const geometry::SensorCluster& cluster, AxisMask used);
 
 /// The same to read.

@@ -64,6 +64,7 @@ void run(const PropagateOptions& options)
     for (std::size_t number = 0;; ++number) {
         const auto more = input->next(row);
         if (!more) fail(more.error());
+        if (!*more && number == 0) fail(input->nothing());
         if (!*more) return;
         const Eigen::Vector3d increment(row.value[0], row.value[1], row.value[2]);
         if (!(increment.cwiseAbs().maxCoeff() <= largest_rad))
@@ -85,7 +86,7 @@ void add_propagate(Program& program)
         "  yes 0,0,0.15707963267948966 | head -10 | quorient propagate --algorithm window-10 --interval 0.01\n");
     const auto options = std::make_shared<PropagateOptions>();
     verb.option("--algorithm", options->algorithm, "single, previous, two-sample, ..., window-N").shows_default();
-    verb.option("--interval", options->interval_s, "that each row spans, s");
+    verb.option("--interval", options->interval_s, "that each row spans, s").within(settings::above_zero);
     verb.numbers("--initial", options->initial, 4, "attitude before the first row, w,x,y,z");
     verb.option("file", options->file, "rows of increments; - is standard input").value_name("FILE").shows_default();
     verb.flag("--list", options->list, "the algorithms with their equations and sources, instead");

@@ -29,7 +29,9 @@ Json report_json(const evaluation::RunObserver& run, const report::ReplayReport&
     json["log"] = offline.remarks();
     json["rejected"] = {{"axes_and_frames", offline.intake().rejected}, {"gaps", offline.intake().gaps}};
     json["faults"] = report.faults();
+    json["isolations"] = report.isolations();
     json["false_isolations"] = report.false_isolations();
+    json["undecided_s"] = report.undecided_s();
     auto& attitude = json["attitude"];
     attitude = {{"final", nullptr}, {"max_error_rad", nullptr}, {"final_error_rad", nullptr}};
     if (report.final_attitude()) attitude["final"] = report.final_attitude()->attitude;
@@ -50,10 +52,13 @@ void print_table(const Json& json)
             fmt::print("  lane {:<8} detected {:<10} isolated {:<10} axes {}\n", lane, dump(reaction["detected_s"]),
                        dump(reaction["isolated_s"]), dump(reaction["isolated"]));
     }
-    fmt::print("false isolations {}\n", json["false_isolations"].size());
-    for (const auto& entry : json["false_isolations"])
-        fmt::print("  lane {} at {:.3f} s: axes {}\n", entry["lane"].get<std::string>(), entry["time_s"].get<double>(),
-                   dump(entry["axes"]));
+    for (const auto& entry : json["isolations"])
+        fmt::print("lane {} isolated: {} from {:.3f} s{}{}\n", entry["lane"].get<std::string>(), entry["names"].get<std::string>(),
+                   entry["time_s"].get<double>(), entry["diagnosis"].get<std::string>().empty() ? "" : "; ", entry["diagnosis"].get<std::string>());
+    if (json["isolations"].empty()) fmt::print("isolated: nothing\n");
+    if (!json["faults"].empty()) fmt::print("false isolations {}, against the faults stated above\n", json["false_isolations"].size());
+    for (const auto& [lane, states] : json["undecided_s"].items())
+        for (const auto& [state, seconds] : states.items()) fmt::print("lane {} {} for {:.3f} s\n", lane, state, seconds.get<double>());
     fmt::print("final attitude {}, largest error {}, final error {} rad\n", dump(json["attitude"]["final"]),
                dump(json["attitude"]["max_error_rad"]), dump(json["attitude"]["final_error_rad"]));
 }
@@ -73,12 +78,14 @@ std::string quoted(const std::vector<std::string>& logs)
 
 int replay(ReplayOptions options)
 {
+    if (options.from_s && options.to_s && !(*options.from_s < *options.to_s))
+        fail(fmt::format("--from {} is not before --to {}", *options.from_s, *options.to_s));
     options.system.set.push_back("source.kind=log");
     options.system.set.push_back("source.faults=[]");  // the log is what it is; only --fault adds to it
     options.system.set.push_back("source.file=" + quoted(options.logs));
     if (options.from_s) options.system.set.push_back(fmt::format("source.from_s={}", *options.from_s));
     if (options.to_s) options.system.set.push_back(fmt::format("source.to_s={}", *options.to_s));
-    const auto system = options.system.load();
+    const auto system = options.system.load_without_joining();
 
     evaluation::RunObserver run{system, evaluation::Shadow::off};
     report::ReplayReport report{system};
@@ -87,6 +94,7 @@ int replay(ReplayOptions options)
         fmt::print(stderr, "{}\n", done.error());
         return 2;
     }
+    if (run.truth_frames() == 0) fail(fmt::format("no frame to replay: {}", offline.remarks()));
     const auto json = report_json(run, report, offline);
     if (options.json) fmt::print("{}\n", dump(json));
     else print_table(json);
@@ -101,12 +109,12 @@ void add_replay(Program& program)
         "replay", "The whole system over a recording on the local bus, as fast as it goes; bit-identical on every run");
     auto options = std::make_shared<ReplayOptions>();
     verb.arguments("log", options->logs,
-                     "MIMU4444 binary, Xsens DOT CSV, or the CSV of quorient simulate and record; several of one motion are merged")
+                     "any log of gyros: ArduPilot, PX4, ROS 2 bag, CSV, MIMU4444, Xsens DOT; several of one motion are merged")
         .required()
         .value_name("LOG ...");
     options->system.add_replay_to(verb);
-    verb.option("--from", options->from_s, "Begin here").value_name("S");
-    verb.option("--to", options->to_s, "End here").value_name("S");
+    verb.option("--from", options->from_s, "Begin here").within(settings::not_negative).value_name("S");
+    verb.option("--to", options->to_s, "End here").within(settings::above_zero).value_name("S");
     verb.flag("--json", options->json, "One JSON object");
     verb.footer("Example:\n  quorient replay data.bin --system deploy/configurations/mimu4444.yaml --to 22 --json");
     verb.run([options] {

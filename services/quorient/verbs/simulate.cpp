@@ -128,6 +128,8 @@ Json frame_json(const SensorFrame& frame, const TruthState& truth)
 void print_run(const SimulateOptions& options, const simulation::Scenario& scenario, const geometry::SensorCluster& cluster)
 {
     simulation::SimulatedInstrument instrument(scenario, cluster, 0, SensorKind::gyro, 0);
+    if (instrument.frame_count() == 0)
+        fail(fmt::format("--duration {} s holds no frame: --interval is {} s", scenario.duration_s, scenario.interval_s));
     std::optional<recording::CsvWriter> csv;
     if (!options.json) csv.emplace(std::cout, cluster.size(), true);
     SensorFrame frame;
@@ -137,8 +139,6 @@ void print_run(const SimulateOptions& options, const simulation::Scenario& scena
         if (csv) csv->write(frame, &truth);
         else std::cout << dump(frame_json(frame, truth)) << '\n';
     }
-    std::cout.flush();
-    if (!std::cout) fail("standard output cannot be written any more");
 }
 
 void run(const SimulateOptions& options)
@@ -164,11 +164,11 @@ void add_motion_options(Verb& verb, const std::shared_ptr<SimulateOptions>& o)
     of_motion(verb.option("--k3", o->coning.k3, "rate about body x, rad/s").shows_default(), o, "coning");
     of_motion(verb.option("--mu", o->coning.mu, "initial attitude; mu^2 + nu^2 = 1").shows_default(), o, "coning");
     of_motion(verb.option("--nu", o->coning.nu, "initial attitude").shows_default(), o, "coning");
-    of_motion(verb.option("--half-angle-deg", o->half_angle_deg, "of the cone").shows_default(), o, "classic-coning");
-    of_motion(verb.option("--frequency-hz", o->frequency_hz, "of the cone").shows_default(), o, "classic-coning");
+    of_motion(verb.option("--half-angle-deg", o->half_angle_deg, "of the cone").within(settings::not_negative).shows_default(), o, "classic-coning");
+    of_motion(verb.option("--frequency-hz", o->frequency_hz, "of the cone").within(settings::above_zero).shows_default(), o, "classic-coning");
     of_motion(verb.numbers("--rate-deg-s", o->rate_deg_s, 3, "body rate x,y,z"), o, "turn");
-    of_motion(verb.option("--bandwidth-hz", o->bandwidth_hz, "highest frequency of the angles").shows_default(), o, "random");
-    of_motion(verb.option("--rms-deg-s", o->rms_deg_s, "root mean square of the rate per axis").shows_default(), o, "random");
+    of_motion(verb.option("--bandwidth-hz", o->bandwidth_hz, "highest frequency of the angles").within(settings::above_zero).shows_default(), o, "random");
+    of_motion(verb.option("--rms-deg-s", o->rms_deg_s, "root mean square of the rate per axis").within(settings::not_negative).shows_default(), o, "random");
 }
 
 }  // namespace
@@ -192,13 +192,13 @@ void add_simulate(Program& program)
         .one_of({"coning", "classic-coning", "rest", "turn", "random"});
     add_cluster_options(verb, options->choice);
     add_motion_options(verb, options);
-    verb.option("--interval", options->interval_s, "between frames, s").shows_default();
-    verb.option("--duration", options->duration_s, "s").shows_default();
+    verb.option("--interval", options->interval_s, "between frames, s").within(settings::above_zero).shows_default();
+    verb.option("--duration", options->duration_s, "s").within(settings::above_zero).shows_default();
     verb.option("--seed", options->seed, "of noise, random motion and random faults").shows_default();
-    verb.option("--quantum", options->quantum_rad, "smallest step of an increment, rad");
+    verb.option("--quantum", options->quantum_rad, "smallest step of an increment, rad").within(simulation::scenario_record(), "quantum_rad");
     verb.option("--quantize", options->quantize, "none, carry, truncate or body-truncate; carry where a quantum is given");
-    verb.option("--noise-rad", options->noise_rad, "standard deviation of every increment, rad");
-    verb.option("--range-deg-s", options->range_deg_s, "where kind=rail sticks").shows_default();
+    verb.option("--noise-rad", options->noise_rad, "standard deviation of every increment, rad").within(simulation::scenario_record(), "noise_rad");
+    verb.option("--range-deg-s", options->range_deg_s, "where kind=rail sticks").within(settings::above_zero).shows_default();
     verb.option("--fault", options->faults, "SPEC, repeatable").value_name("SPEC ...");
     verb.option("--at", options->at_s, "print the state at this time and the exact increments over the interval after it, instead");
     verb.flag("--json", options->json, "one JSON object per row");

@@ -7,6 +7,8 @@
 #include "quorient/runtime/signals.hpp"
 #include "quorient/messages/words.hpp"
 #include "cli/system_options.hpp"
+#include "quorient/system/numbers.hpp"
+#include "report/standing.hpp"
 #include "verbs.hpp"
 
 #include <fmt/chrono.h>
@@ -19,6 +21,9 @@
 namespace quorient::cli {
 
 namespace {
+
+// A reader of `voted` matches writers whose lease is at most its own.
+constexpr double longest_lease_s = 3600;
 
 struct StatusOptions {
     BusOptions bus;
@@ -40,6 +45,31 @@ struct Heard {
 };
 
 using Services = std::map<std::uint32_t, Heard>;
+
+/// One more than the place in the system's list.
+std::uint32_t number_of(const ServiceStatus& status, std::uint32_t first_service)
+{
+    return status.service % system::services_per_unit - first_service + 1;
+}
+
+void name_services(const Services& services, report::Standing& standing)
+{
+    for (const auto& [id, heard] : services) {
+        const std::string name{text_of(heard.latest.name)};
+        if (role_of(heard.latest) == ServiceRole::voter) standing.voters[number_of(heard.latest, system::first_voter_service)] = name;
+        if (role_of(heard.latest) == ServiceRole::detector)
+            standing.lanes[number_of(heard.latest, system::first_detector_service)] = name.starts_with("fdi-") ? name.substr(4) : name;
+    }
+}
+
+void find_level_since(const std::vector<HealthEvent>& events, std::uint32_t unit, report::Standing& standing)
+{
+    if (!standing.voted) return;
+    const auto owner = unit * system::services_per_unit + system::first_voter_service + standing.voted->voter - 1;
+    for (const auto& event : events)
+        if (event.source == owner && code_of(event) == EventCode::level_changed)
+            standing.level_since_ns = std::max(standing.level_since_ns.value_or(0), event.wall_time_ns);
+}
 
 void print_services(const Services& services)
 {
@@ -68,48 +98,75 @@ void print_events(std::vector<HealthEvent> events, std::size_t most)
     }
 }
 
-int status(const StatusOptions& options)
-{
-    const auto bus = options.bus.open("quorient-status");
-    const runtime::SystemClock clock;
-    runtime::EventLoop loop{*bus, clock, runtime::termination_requested()};
+/// What is received of one unit.
+struct Received {
     Services services;
     std::vector<HealthEvent> events;
-    loop.on(bus->subscribe(bus::topics::status), [&](const ServiceStatus& sample) {
-        if (sample.unit != options.bus.unit) return;
-        services.try_emplace(sample.service, Heard{sample, sample}).first->second.latest = sample;
-    });
-    loop.on(bus->subscribe(bus::topics::event), [&](const HealthEvent& event) {
-        if (event.unit == options.bus.unit) events.push_back(event);
-    });
+    report::Standing standing;
+
+    void subscribe(bus::Bus& bus, runtime::EventLoop& loop, std::uint32_t unit)
+    {
+        const auto take = [&loop, &bus, unit](const auto& topic, auto use) {
+            using Message = typename std::decay_t<decltype(topic)>::Message;
+            loop.on(bus.subscribe(topic), [unit, use](const Message& sample) {
+                if (sample.unit == unit) use(sample);
+            });
+        };
+        take(bus::topics::status, [this](const ServiceStatus& sample) {
+            services.try_emplace(sample.service, Heard{sample, sample}).first->second.latest = sample;
+        });
+        take(bus::topics::event, [this](const HealthEvent& event) { events.push_back(event); });
+        take(bus::topics::cluster, [this](const ClusterDescription& sample) { standing.description = sample; });
+        take(bus::topics::voted, [this](const VotedAttitude& sample) { standing.voted = sample; });
+        take(bus::topics::verdict, [this](const FaultVerdict& sample) { standing.verdicts[sample.detector] = sample; });
+    }
+};
+
+void print(const Received& received, const StatusOptions& options, std::int64_t now_ns)
+{
+    if (!options.json) {
+        fmt::print("{}\n\n", report::standing_text(received.standing, now_ns));
+        print_services(received.services);
+        return print_events(received.events, options.events);
+    }
+    Json json = {{"standing", report::standing_json(received.standing, now_ns)}, {"services", Json::array()}, {"events", Json::array()}};
+    for (const auto& [id, heard] : received.services) json["services"].push_back(message_json(heard.latest));
+    for (const auto& event : received.events) json["events"].push_back(message_json(event));
+    fmt::print("{}\n", dump(json));
+}
+
+int status(const StatusOptions& options)
+{
+    auto joined = options.bus;
+    joined.voted_lease_s = longest_lease_s;
+    const auto bus = joined.open("quorient-status");
+    const runtime::SystemClock clock;
+    runtime::EventLoop loop{*bus, clock, runtime::termination_requested()};
+    Received received;
+    received.subscribe(*bus, loop, options.bus.unit);
     loop.timer([&] { loop.quit(0); }).set(clock.steady_ns() + static_cast<std::int64_t>(options.seconds * 1e9));
     loop.run();
-    if (options.json) {
-        Json json = {{"services", Json::array()}, {"events", Json::array()}};
-        for (const auto& [id, heard] : services) json["services"].push_back(message_json(heard.latest));
-        for (const auto& event : events) json["events"].push_back(message_json(event));
-        fmt::print("{}\n", dump(json));
-    } else {
-        print_services(services);
-        print_events(std::move(events), options.events);
-    }
-    if (services.empty())
+    name_services(received.services, received.standing);
+    find_level_since(received.events, options.bus.unit, received.standing);
+    print(received, options, clock.wall_ns());
+    if (received.services.empty())
         fmt::print(stderr, "no service of unit {} answers in domain {} on '{}'\n", options.bus.unit, options.bus.domain,
                    options.bus.interface);
-    return services.empty() ? 1 : 0;
+    return received.services.empty() ? ExitCode::not_as_asked : ExitCode::done;
 }
 
 }  // namespace
 
 void add_status(Program& program)
 {
-    auto verb = program.verb("status", "Who is alive, on which transport, at which rate and latency, and the latest events");
+    auto verb = program.verb("status", "Whether the attitude is good, and why; who is alive, on which transport, at which rate and latency; the latest events");
     auto options = std::make_shared<StatusOptions>();
     options->bus.add_to(verb);
-    verb.option("--seconds", options->seconds, "How long to listen").shows_default();
+    verb.option("--seconds", options->seconds, "How long to listen").within(settings::above_zero).value_name("S").shows_default();
     verb.option("--events", options->events, "How many events to show").shows_default();
     verb.flag("--json", options->json, "One JSON object");
     verb.footer("Example:\n  quorient status --domain 42");
+    verb.not_as_asked_if("no service answers");
     verb.run([options] {
         if (const int exit_code = status(*options); exit_code != 0) throw Exit{exit_code};
     });

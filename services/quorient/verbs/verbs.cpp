@@ -12,14 +12,18 @@ void add_verbs(Program& program)
     add_reset(program);
     add_health(program);
     add_clean(program);
+    add_check(program);
+    add_keys(program);
     add_record(program);
     add_replay(program);
     add_layout(program);
+    add_design(program);
     add_assess(program);
     add_propagate(program);
     add_simulate(program);
     add_vessel(program);
     add_calibrate(program);
+    add_diagnose(program);
 }
 
 }  // namespace quorient::cli

@@ -2,7 +2,6 @@
 
 #include "cli/program.hpp"
 
-
 namespace quorient::cli {
 
 /// Each adds its sub-command with options, help and example to the program; the callback runs the verb.
@@ -17,12 +16,16 @@ void add_health(Program& program);
 void add_record(Program& program);
 void add_replay(Program& program);
 void add_clean(Program& program);
+void add_check(Program& program);
+void add_keys(Program& program);
 void add_layout(Program& program);
+void add_design(Program& program);
 void add_assess(Program& program);
 void add_propagate(Program& program);
 void add_simulate(Program& program);
 void add_vessel(Program& program);
 void add_calibrate(Program& program);
+void add_diagnose(Program& program);
 
 /// All verbs of the program.
 void add_verbs(Program& program);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 namespace quorient::cli {
 namespace {
@@ -106,10 +107,12 @@ void run(const VesselOptions& options)
     const auto input = load_vessel(options.file);
     if (!input) fail(input.error());
     if (options.gains) return print_gains(options, *input);
-    if (options.table) return print_vessel_table();
+    if (options.table) return options.json ? fmt::print("{}\n", dump(vessel_table_json())) : print_vessel_table();
     const auto scheme = fdi::parse_observer_scheme(options.scheme.empty() ? "blind" : options.scheme).value();
     const auto states = static_cast<std::size_t>(input->model.a.rows());
     const auto channels = static_cast<std::size_t>(input->model.c.rows());
+    std::optional<OutputFile> plot_file;
+    if (!options.plot_file.empty()) plot_file.emplace(options.plot_file, options.force);
     VesselPlot plot(std::string(to_string(scheme)), states, channels);
     bool first = !options.json;
     play(options, *input, scheme, [&](const VesselRow& row) {
@@ -117,11 +120,11 @@ void run(const VesselOptions& options)
         first = false;
         if (options.json) std::cout << dump(json_of(row)) << '\n';
         else print_csv(row);
-        if (!options.plot_file.empty()) plot.add(row);
+        if (plot_file) plot.add(row);
         return static_cast<bool>(std::cout);
     });
     std::cout.flush();
-    if (!options.plot_file.empty()) plot.write(options.plot_file);
+    if (plot_file) plot.write(*plot_file);
 }
 
 }  // namespace
@@ -146,15 +149,18 @@ void add_vessel(Program& program)
     verb.option("--scheme", options->scheme, "directional or blind; blind where not given (--gains: both)")
         .one_of({"directional", "blind"});
     const auto fault = verb.option("--fault", options->faults, "SPEC, repeatable; or none").value_name("SPEC ...");
-    verb.option("--interval", options->interval_s, "between samples, s").shows_default();
-    verb.option("--duration", options->duration_s, "s").shows_default();
-    verb.option("--noise", options->noise, "standard deviation of every sample, in the channel's unit").shows_default();
+    verb.option("--interval", options->interval_s, "between samples, s").within(settings::above_zero).shows_default();
+    verb.option("--duration", options->duration_s, "s").within(settings::above_zero).shows_default();
+    verb.option("--noise", options->noise, "standard deviation of every sample, in the channel's unit")
+        .within(simulation::vessel_record(), "noise")
+        .shows_default();
     verb.option("--seed", options->seed, "of the noise").shows_default();
     verb.option("--plot", options->plot_file, "the run as figures 4 to 6 of the paper").value_name("FILE.svg");
+    add_force(verb, options->force);
     const auto gains = verb.flag("--gains", options->gains, "print A, B, C, every observer's gain and poles as JSON, instead");
     verb.flag("--table", options->table, "print the paper's run beside the figures recomputed from it: gains, window means, decisions")
         .in_place_of({gains, vessel, fault});
-    verb.flag("--json", options->json, "one JSON object per row");
+    verb.flag("--json", options->json, "one JSON object per row; one for the whole of --table");
     verb.run([options] { run(*options); });
 }
 

@@ -1,9 +1,12 @@
 #include "vessel_input.hpp"
 
-#include "quorient/runtime/yaml.hpp"
+#include "quorient/configuration/document.hpp"
+#include "quorient/configuration/table.hpp"
 #include "quorient/system/plant.hpp"
 
 namespace quorient::cli {
+
+using namespace configuration;
 namespace {
 
 constexpr double default_threshold = 1e-3;  // of methods.md 001
@@ -24,25 +27,54 @@ fdi::ObserverSettings VesselInput::observers(fdi::ObserverScheme scheme) const
     return settings;
 }
 
+namespace {
+
+/// The file, apart from its plant.
+struct VesselFile {
+    VesselInput input;
+    system::PlantSection plant;
+    fdi::ObserverSettings observers;
+};
+
+const Table<VesselFile>& vessel_file_table()
+{
+    using fdi::ObserverSettings;
+    const auto figures = record<ObserverSettings>(fdi::observer_record());
+    static const Table<VesselFile> table{
+        "A vessel, or another plant, and its observers.",
+        {all_of(&VesselFile::plant, system::plant_rows()),
+         all_of(&VesselFile::input, system::poles({.name = "directional_poles"}, &VesselInput::directional_poles)),
+         all_of(&VesselFile::input, system::poles({.name = "blind_poles"}, &VesselInput::blind_poles)),
+         all_of(&VesselFile::observers, value({.name = "sigma", .bounds = fdi::sigma_bounds}, &ObserverSettings::sigma)),
+         all_of(&VesselFile::observers, chosen(figures, {"model_error", "threshold"})),
+         all_of(&VesselFile::observers,
+                value({.name = "false_alarm_probability", .bounds = settings::probability}, &ObserverSettings::false_alarm_probability))}};
+    return table;
+}
+
+}  // namespace
+
 tl::expected<VesselInput, std::string> load_vessel(const std::string& file)
 {
-    VesselInput input;
-    input.model = simulation::nomoto({}).value();
-    if (file.empty()) return input;
-    const auto document = runtime::load_yaml(file);
-    if (!document) return tl::unexpected(document.error());
-    runtime::Problems problems(file);
-    runtime::Section root(*document, "", problems);
-    system::parse_plant(root, input.model);
-    system::parse_poles(root, "directional_poles", input.directional_poles);
-    system::parse_poles(root, "blind_poles", input.blind_poles);
-    root.numbers("sigma", input.sigma, runtime::not_negative);
-    root.number("model_error", input.model_error, {.lowest = 0, .highest = 1});
-    root.number("false_alarm_probability", input.false_alarm_probability, runtime::probability);
-    root.number("threshold", input.threshold, runtime::above_zero);
-    root.finish();
-    if (!problems.empty()) return tl::unexpected(problems.text());
-    return input;
+    VesselFile read;
+    if (!file.empty()) {
+        const auto document = load_yaml(file);
+        if (!document) return tl::unexpected(document.error().text());
+        Problems problems(file);
+        Section root(*document, "", problems);
+        vessel_file_table().read(root, read);
+        const auto model = system::model_of(read.plant);
+        if (model) read.input.model = *model;
+        else if (!model.error().what.empty()) report(problems, *document, model.error().key, model.error().what);
+        if (!problems.empty()) return tl::unexpected(problems.text());
+    } else {
+        read.input.model = simulation::nomoto({}).value();
+    }
+    read.input.sigma = read.observers.sigma;
+    read.input.model_error = read.observers.model_error;
+    read.input.false_alarm_probability = read.observers.false_alarm_probability;
+    read.input.threshold = read.observers.threshold;
+    return read.input;
 }
 
 }  // namespace quorient::cli

@@ -50,7 +50,7 @@ void VesselPlot::add(const VesselRow& row)
     }
 }
 
-void VesselPlot::write(const std::string& file) const
+void VesselPlot::write(OutputFile& file) const
 {
     std::vector<Chart> charts{motion_, samples_};
     charts.insert(charts.end(), residuals_.begin(), residuals_.end());

@@ -15,7 +15,7 @@ public:
 
     void add(const VesselRow& row);
 
-    void write(const std::string& file) const;
+    void write(OutputFile& file) const;
 
 private:
     Chart motion_, samples_, metrics_, decisions_;

@@ -20,6 +20,7 @@ struct VesselOptions {
     double noise = 0;
     std::uint64_t seed = 1;
     std::string plot_file;
+    bool force = false;
     bool gains = false;
     bool table = false;
     bool json = false;

@@ -71,22 +71,37 @@ void add(const VesselRow& row, std::size_t scheme, double threshold, Sums& sums)
     }
 }
 
-void print_gains(const VesselInput& input, double interval_s)
-{
-    constexpr std::array<std::array<double, 4>, 4> known{{{1, 2.88248337, .49438202, 2.97560976},
+// The gains K_a, K_g (directional) and K_A, K_G (blind), recomputed from the repaired equations, by rows.
+constexpr std::array<std::array<double, 4>, 4> known_gains{{{1, 2.88248337, .49438202, 2.97560976},
                                                           {1, -1.39024390, 3.28947368, .47560976},
                                                           {0, 4.90521064, 0, 3.97560976},
                                                           {3.97560976, 0, 2.27150193, 0}}};
-    constexpr std::array<const char*, 4> names{"K_a", "K_g", "K_A", "K_G"};
-    fmt::print("Gains (a, g: directional, poles -3, -4 and -0.5, -4; A, G: blind to the sway velocity, to the yaw rate, poles -3, -4)\n");
-    fmt::print("{:<8}{:>14}{:>14}{:>12}\n", "", "ours", "recomputed", "difference");
+constexpr std::array<const char*, 4> gain_names{"K_a", "K_g", "K_A", "K_G"};
+
+using Gains = std::array<std::array<double, 4>, 4>;  // by observer, then by rows
+
+Gains gains_of(const VesselInput& input, double interval_s)
+{
+    Gains gains{};
     for (std::size_t observer = 0; observer < 4; ++observer) {
         const auto scheme = observer < 2 ? fdi::ObserverScheme::directional : fdi::ObserverScheme::blind;
         const auto bank = fdi::ObserverBank::make(input.observers(scheme), interval_s).value();
+        for (std::size_t entry = 0; entry < 4; ++entry)
+            gains[observer][entry] =
+                bank.gain(observer % 2)(static_cast<Eigen::Index>(entry / 2), static_cast<Eigen::Index>(entry % 2));
+    }
+    return gains;
+}
+
+void print_gains(const Gains& gains)
+{
+    fmt::print("Gains (a, g: directional, poles -3, -4 and -0.5, -4; A, G: blind to the sway velocity, to the yaw rate, poles -3, -4)\n");
+    fmt::print("{:<8}{:>14}{:>14}{:>12}\n", "", "ours", "recomputed", "difference");
+    for (std::size_t observer = 0; observer < 4; ++observer) {
         for (std::size_t entry = 0; entry < 4; ++entry) {
-            const double ours = bank.gain(observer % 2)(static_cast<Eigen::Index>(entry / 2), static_cast<Eigen::Index>(entry % 2));
-            fmt::print("{} {} {}{:>16.8f}{:>14.8f}{:>12.0e}\n", names[observer], entry / 2 + 1, entry % 2 + 1, ours, known[observer][entry],
-                       ours - known[observer][entry]);
+            const double ours = gains[observer][entry];
+            const double known = known_gains[observer][entry];
+            fmt::print("{} {} {}{:>16.8f}{:>14.8f}{:>12.0e}\n", gain_names[observer], entry / 2 + 1, entry % 2 + 1, ours, known, ours - known);
         }
     }
 }
@@ -106,29 +121,76 @@ void print_windows(const Sums& sums)
     }
 }
 
+/// Both schemes over the paper's run.
+struct Table {
+    Gains gains;
+    Sums sums;
+    double threshold;
+};
+
+Table table()
+{
+    const VesselOptions options;
+    const auto input = load_vessel("").value();
+    Table result{gains_of(input, options.interval_s), {}, *input.observers(fdi::ObserverScheme::blind).threshold};
+    for (std::size_t scheme = 0; scheme < 2; ++scheme) {
+        const auto kind = scheme == 0 ? fdi::ObserverScheme::directional : fdi::ObserverScheme::blind;
+        play(options, input, kind, [&](const VesselRow& row) {
+            add(row, scheme, result.threshold, result.sums);
+            return true;
+        });
+    }
+    return result;
+}
+
+double share(const Sums& sums, std::size_t fault, std::size_t scheme)
+{
+    return 100 * sums.right[fault][scheme] / sums.of[fault];
+}
+
+Json windows_json(const Sums& sums)
+{
+    Json json = Json::array();
+    for (std::size_t w = 0; w < windows.size(); ++w)
+        for (std::size_t k = 0; k < quantities.size(); ++k)
+            json.push_back({{"window", windows[w].name},
+                            {"quantity", quantities[k]},
+                            {"mean", sums.total[w][k] / sums.samples[w]},
+                            {"recomputed", published[w][k]},
+                            {"is_bound", windows[w].faulty == 0 && k >= 2}});
+    return json;
+}
+
 }  // namespace
 
 void print_vessel_table()
 {
-    const VesselOptions options;
-    const auto input = load_vessel("").value();
-    const double threshold = *input.observers(fdi::ObserverScheme::blind).threshold;
-    Sums sums;
-    for (std::size_t scheme = 0; scheme < 2; ++scheme) {
-        const auto kind = scheme == 0 ? fdi::ObserverScheme::directional : fdi::ObserverScheme::blind;
-        play(options, input, kind, [&](const VesselRow& row) {
-            add(row, scheme, threshold, sums);
-            return true;
-        });
-    }
-    print_gains(input, options.interval_s);
+    const auto [gains, sums, threshold] = table();
+    print_gains(gains);
     print_windows(sums);
     fmt::print("\nSamples of a fault that name its channel, threshold {:g}, %\n{:<14}{:>12}{:>12}{:>12}{:>12}\n", threshold, "",
                "directional", "recomputed", "blind", "recomputed");
     for (std::size_t f = 0; f < shares.size(); ++f)
-        fmt::print("{:<14}{:>12.2f}{:>12.1f}{:>12.2f}{:>12.1f}\n", shares[f].name, 100 * sums.right[f][0] / sums.of[f],
-                   shares[f].directional, 100 * sums.right[f][1] / sums.of[f], shares[f].blind);
+        fmt::print("{:<14}{:>12.2f}{:>12.1f}{:>12.2f}{:>12.1f}\n", shares[f].name, share(sums, f, 0), shares[f].directional,
+                   share(sums, f, 1), shares[f].blind);
     fmt::print("false alarms  {:>12}{:>12}{:>12}{:>12}\n", sums.false_alarms[0], 0, sums.false_alarms[1], 0);
+}
+
+Json vessel_table_json()
+{
+    const auto [gains, sums, threshold] = table();
+    Json json;
+    for (std::size_t observer = 0; observer < 4; ++observer)
+        json["gains"].push_back({{"name", gain_names[observer]}, {"gain", gains[observer]}, {"recomputed", known_gains[observer]}});
+    json["windows"] = windows_json(sums);
+    json["threshold"] = threshold;
+    for (std::size_t f = 0; f < shares.size(); ++f)
+        json["named_percent"].push_back(
+            {{"fault", shares[f].name},
+             {"directional", {{"share", share(sums, f, 0)}, {"recomputed", shares[f].directional}}},
+             {"blind", {{"share", share(sums, f, 1)}, {"recomputed", shares[f].blind}}}});
+    json["false_alarms"] = {{"directional", sums.false_alarms[0]}, {"blind", sums.false_alarms[1]}};
+    return json;
 }
 
 }  // namespace quorient::cli

@@ -1,0 +1,104 @@
+#include "output_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+namespace quorient::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string error_text()
+{
+    return errno != 0 ? std::strerror(errno) : "cannot be written";
+}
+
+void refuse_where_it_cannot_be(const fs::path& file, bool force)
+{
+    std::error_code unknown;
+    const auto status = fs::status(file, unknown);
+    if (fs::is_directory(status)) fail(fmt::format("{}: is a directory, expected a file's name", file.string()));
+    if (fs::is_regular_file(status) && !force) fail(fmt::format("{}: exists already; --force overwrites it", file.string()));
+    const auto folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    if (!fs::is_directory(folder, unknown)) fail(fmt::format("{}: there is no folder '{}'", file.string(), folder.string()));
+    errno = 0;
+    if (::access(fs::exists(status) ? file.c_str() : folder.c_str(), W_OK) != 0)
+        fail(fmt::format("{}: cannot be written: {}", file.string(), error_text()));
+}
+
+/// A full disk or a quota may show only when the system writes for good. What is no file on a disk (a pipe) has nothing to wait for.
+bool is_on_disk(const std::string& name)
+{
+    const int file = ::open(name.c_str(), O_WRONLY | O_CLOEXEC);
+    if (file < 0) return false;
+    const bool done = ::fsync(file) == 0 || errno == EINVAL || errno == EROFS;
+    return ::close(file) == 0 && done;
+}
+
+}  // namespace
+
+OutputFile::OutputFile(std::string name, bool force) : name_(std::move(name))
+{
+    refuse_where_it_cannot_be(name_, force);
+}
+
+std::ostream& OutputFile::stream()
+{
+    if (stream_.is_open() || !failure_.empty()) return stream_;
+    stream_.rdbuf()->pubsetbuf(nullptr, 0);
+    errno = 0;
+    stream_.open(name_, std::ios::binary);
+    if (!stream_) failure_ = error_text();
+    errno = 0;
+    return stream_;
+}
+
+const std::string& OutputFile::failure()
+{
+    if (failure_.empty() && stream_.is_open() && !stream_) failure_ = error_text();
+    return failure_;
+}
+
+std::uint64_t OutputFile::keep_whole_lines()
+{
+    stream_.close();
+    if (!fs::is_regular_file(name_)) return 0;
+    std::ifstream written(name_, std::ios::binary);
+    std::uint64_t lines = 0, size = 0, whole = 0;
+    std::array<char, 65536> block;
+    while (written.read(block.data(), block.size()) || written.gcount() > 0) {
+        for (std::streamsize i = 0; i < written.gcount(); ++i) {
+            ++size;
+            if (block[static_cast<std::size_t>(i)] != '\n') continue;
+            ++lines;
+            whole = size;
+        }
+    }
+    if (whole < size) fs::resize_file(name_, whole);
+    return lines;
+}
+
+void OutputFile::finish()
+{
+    if (failure().empty() && stream_.is_open()) {
+        errno = 0;
+        stream_.close();
+        if (!stream_ || (fs::is_regular_file(name_) && !is_on_disk(name_))) failure_ = error_text();
+    }
+    if (!failure_.empty()) fail(fmt::format("{}: {}", name_, failure_));
+}
+
+void add_force(Verb& verb, bool& force)
+{
+    verb.flag("--force", force, "Overwrite a file that exists already");
+}
+
+}  // namespace quorient::cli
