@@ -14,7 +14,8 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_QUORIENT_PACKAGE_NAME quorient)
 set(CPACK_DEBIAN_QUORIENT_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_QUORIENT_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_QUORIENT_PACKAGE_SUGGESTS "iceoryx, tshark")
+set(CPACK_DEBIAN_QUORIENT_PACKAGE_RECOMMENDS "libjs-dygraphs")
+set(CPACK_DEBIAN_QUORIENT_PACKAGE_SUGGESTS "iceoryx, tshark, prometheus")
 set(CPACK_COMPONENT_QUORIENT_DESCRIPTION "Independent processes isolate failed gyros, integrate the attitude without
 them and vote on the result, so that one right attitude keeps flowing while
 sensors, processes and networks fail. Speaks Fast DDS and Cyclone DDS.")
@@ -22,7 +23,7 @@ set(CPACK_DEBIAN_QUORIENT_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_SOURCE_DIR}/pack
 
 set(CPACK_DEBIAN_QUORIENT-DEV_PACKAGE_NAME quorient-dev)
 set(CPACK_DEBIAN_QUORIENT-DEV_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_QUORIENT-DEV_PACKAGE_DEPENDS "libeigen3-dev, libexpected-dev, libfmt-dev, libboost-dev, cmake")
+set(CPACK_DEBIAN_QUORIENT-DEV_PACKAGE_DEPENDS "libeigen3-dev, libexpected-dev, libfmt-dev, libboost-dev, liblz4-dev, libsqlite3-dev, libzstd-dev, zlib1g-dev, pkg-config, cmake")
 set(CPACK_COMPONENT_QUORIENT-DEV_DESCRIPTION "For development: static libraries, headers and CMake configuration for sensor
 geometry, fault detection and isolation, attitude integration, voting,
 simulation and recordings, and the IDL file of the DDS topics.")

@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
-"""Writes a program's manual page, compressed, from its own --help and that of its verbs: manual_page.py PROGRAM OUTPUT.gz"""
+"""Writes a program's manual page, compressed, from its own --help and that of its verbs: manual_page.py PROGRAM OUTPUT.gz
+
+manual_page.py QUORIENT OUTPUT.gz system-file: the page of the system file, from `quorient check --key all`
+"""
 import gzip
 import pathlib
 import re
@@ -40,11 +43,19 @@ def page(program):
     return "\n".join(parts) + "\n"
 
 
+def system_file_page(program):
+    keys = subprocess.run([program, "check", "--key", "all"], capture_output=True, text=True, check=True, timeout=30).stdout
+    return "\n".join([f'.TH QUORIENT\\-SYSTEM 5 "" "quorient {version(program)}" "File Formats"', ".SH NAME",
+                      "quorient\\-system \\- the system file of quorient", ".SH DESCRIPTION", ".nf", escaped(keys.strip()), ".fi", ".SH SEE ALSO",
+                      "quorient(1). /usr/share/quorient holds example system files."]) + "\n"
+
+
 def main():
-    program, output = map(pathlib.Path, sys.argv[1:])
+    program, output = map(pathlib.Path, sys.argv[1:3])
+    of_system_file = sys.argv[3:] == ["system-file"]
     # Without name and time, so that the same program gives the same file.
     with open(output, "wb") as file, gzip.GzipFile(filename="", mode="wb", compresslevel=9, fileobj=file, mtime=0) as packed:
-        packed.write(page(program.resolve()).encode())
+        packed.write((system_file_page if of_system_file else page)(program.resolve()).encode())
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ REFERENCES = "docs/references.md"
 SOURCES = (".cpp", ".hpp", ".h", ".c", ".py", ".idl", ".cmake", ".yaml", ".md", ".txt")
 
 # Rooms whose comments are not in plain words yet.
-LATER = ("common/attitude/", "common/fdi/", "common/messages/", "common/runtime/", "common/system/", "common/voting/", "services/")
+LATER = ("common/fdi/", "common/messages/", "common/runtime/", "common/system/", "services/")
 
 # Documents that stood outside the project, and what took their place in docs/.
 FOREIGN_DOCUMENT = re.compile(r"\b(methods|cli|[Dd]esign|dds-notes|compose-notes)\.md\b")

@@ -57,7 +57,7 @@ def rows(folder):
         yield stamp, sequence, "sensor", "frame"
     for verdict in samples(folder, "verdict"):
         isolated = verdict["isolated_mask"]
-        since = f", excluded from frame {min(verdict['excluded_from'][:4])}" if isolated else ""
+        since = f", excluded from frame {min(frame for frame in verdict['excluded_from'] if frame is not None)}" if isolated else ""
         said = f"{VERDICT[verdict['state']]}, suspects: {axes(verdict['suspect_mask'])}, isolated: {axes(isolated)}{since}"
         yield verdict["stamp_ns"][DETECTOR_OUT], verdict["sequence_number"], f"detector {'abc'[verdict['detector'] - 1]}", said
     for attitude in samples(folder, "attitude"):

@@ -48,9 +48,9 @@ def ask_for_priority():
 
 
 class Pipeline:
-    """Use as a context: whatever happens inside, every process that it started is ended by its id."""
+    """Use as a context: whatever happens inside, every process that it started is ended by its id. With a level it makes keys and runs secured."""
 
-    def __init__(self, *assignments, plain_vendor="cyclonedds", launch_timeout_s=30, rate_hz=RATE_HZ):
+    def __init__(self, *assignments, plain_vendor="cyclonedds", launch_timeout_s=30, rate_hz=RATE_HZ, level="none", prepare=lambda keys: None):
         self.rate_hz = rate_hz
         self.run_directory = pathlib.Path(tempfile.mkdtemp(prefix="quorient-kill-"))
         self.environment = dict(os.environ, QUORIENT_RUN_DIR=str(self.run_directory))
@@ -58,7 +58,12 @@ class Pipeline:
         self.timeout_s = launch_timeout_s
         self.started_again = []
         self.stopped = []
+        self.keys = self._make_keys(level) if level != "none" else None
+        if self.keys:
+            prepare(self.keys)
+            assignments += (f"security.directory={self.keys}", f"security.level={level}")
         settings = [word for assignment in ("expect=null", f"source.rate_hz={rate_hz}", *assignments) for word in ("--set", assignment)]
+        self.launched_s = time.monotonic()
         self.launch = subprocess.Popen(
             self.command("launch", CONFIGURATIONS / "demo.yaml", "--domain", self.domain, "--json", *settings),
             env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
@@ -84,14 +89,24 @@ class Pipeline:
     def command(self, verb, *arguments):
         return [str(BIN / "quorient"), verb, *map(str, arguments)]
 
+    def _make_keys(self, level):
+        keys = self.run_directory / "keys"
+        subprocess.run(self.command("keys", CONFIGURATIONS / "demo.yaml", "--out", keys, "--domain", self.domain, "--set", f"security.level={level}",
+                                    "--set", f"security.directory={keys}"), check=True, stdout=subprocess.DEVNULL, timeout=30)
+        return keys
+
+    def with_keys(self):
+        """The options of a verb that joins."""
+        return ("--keys", self.keys) if self.keys else ()
+
     def run(self, verb, *arguments):
         """Another verb of the command line beside the running system."""
         return subprocess.run(
-            self.command(verb, *arguments, "--domain", self.domain), env=self.environment, capture_output=True, text=True, timeout=30
+            self.command(verb, *arguments, "--domain", self.domain, *self.with_keys()), env=self.environment, capture_output=True, text=True, timeout=30
         )
 
     def _record(self, topic, vendor, parse):
-        return Recording(self.command("echo", topic, "--json", "--domain", self.domain, "--dds", vendor), self.environment, parse)
+        return Recording(self.command("echo", topic, "--json", "--domain", self.domain, "--dds", vendor, *self.with_keys()), self.environment, parse)
 
     def until(self, condition, what, timeout_s=None):
         deadline = time.monotonic() + (timeout_s or self.timeout_s)

@@ -13,19 +13,24 @@ import sys
 ALLOWED = {
     "messages": set(),
     "rotation": set(),
+    "settings": set(),
+    "configuration": {"settings"},
     "geometry": {"messages", "rotation"},
-    "fdi": {"geometry", "messages", "rotation"},
-    "attitude": {"geometry", "messages", "rotation"},
-    "voting": {"messages", "rotation"},
-    "simulation": {"geometry", "messages"},
+    "fdi": {"geometry", "messages", "rotation", "settings"},
+    "design": {"fdi", "geometry", "messages"},
+    "attitude": {"geometry", "messages", "rotation", "settings"},
+    "voting": {"messages", "rotation", "settings"},
+    "simulation": {"geometry", "messages", "settings"},
     "recording": {"messages"},
-    "calibration": {"fdi", "geometry", "messages", "recording", "rotation"},
-    "bus": {"messages"},
+    "calibration": {"configuration", "fdi", "geometry", "messages", "recording", "rotation", "settings"},
+    "diagnosis": {"fdi", "geometry", "messages", "recording", "rotation"},
+    "bus": {"messages", "settings"},
+    "security": {"bus", "messages"},
     "runtime": {"bus", "messages"},
-    "system": {"attitude", "bus", "calibration", "fdi", "geometry", "messages", "runtime", "simulation", "voting"},
+    "system": {"attitude", "bus", "calibration", "configuration", "fdi", "geometry", "messages", "rotation", "runtime", "security", "settings", "simulation", "voting"},
     "evaluation": {"attitude", "bus", "geometry", "messages", "rotation", "system"},
 }
-EIGEN = {"rotation", "geometry", "fdi", "attitude", "voting", "simulation", "calibration", "system"}
+EIGEN = {"rotation", "geometry", "fdi", "design", "attitude", "voting", "simulation", "calibration", "diagnosis", "system"}
 # Rooms within rooms: folder -> folders beside it whose headers it may include.
 INNER = {
     "services/quorient": {
@@ -45,7 +50,7 @@ INNER = {
     },
 }
 # What the algorithm rooms must not know: clocks, threads, files, loggers.
-PURE = {"rotation", "geometry", "fdi", "attitude", "voting"}
+PURE = {"rotation", "settings", "geometry", "fdi", "design", "attitude", "voting", "diagnosis"}
 IMPURE_HEADERS = re.compile(r"<(thread|mutex|condition_variable|future|chrono|fstream|filesystem|atomic|spdlog/.*)>")
 VENDOR = {
     "fastdds": re.compile(r"<(fastdds|fastrtps|fastcdr)/"),

@@ -44,14 +44,16 @@ def trace_page(traces):
 
 
 TRACE = os.environ.get("QUORIENT_TAKE_OVER_TRACE")
+LEASE_FRAMES = 14  # 50 ms lease + 20 ms, at 5 ms a frame
 FOUND_WITHIN_FRAMES = 400  # 2 s: twice what the vendors take to find each other
 
 
 class Examples(InteropTest):
     CONSUMERS = ("consumer_cyclonedds", "consumer_fastdds")
 
-    def start_consumers(self):
-        return {name: self.start_logged(name, example(name), self.domain) for name in self.CONSUMERS}
+    def start_consumers(self, keys=None):
+        """@param keys  directory with an identity for each consumer, named as itself"""
+        return {name: self.start_logged(name, example(name), self.domain, *((keys, name) if keys else ())) for name in self.CONSUMERS}
 
     def stop(self, consumers):
         for name, (process, _) in consumers.items():
@@ -129,14 +131,30 @@ class Examples(InteropTest):
         self.assertEqual({verdict["isolated_mask"] for verdict in verdicts}, {0b10})
 
     def test_consumers_go_on_with_the_second_voter_when_the_first_is_killed(self):
+        traces = self.traces_of_take_over()
+        if TRACE:
+            pathlib.Path(TRACE).write_text(trace_page(traces))
+
+    def test_consumers_with_a_certificate_do_so_in_a_secured_system(self):
+        keys = self.run_directory / "keys"
+        made = self.run_program("quorient", "keys", CONFIGURATIONS / "demo.yaml", "--out", keys, "--domain", self.domain)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        for name in self.CONSUMERS:
+            self.assertEqual(self.run_program("quorient", "keys", "--out", keys, "--add", name, "--role", "consumer").returncode, 0)
+        for name, (_, missed) in self.traces_of_take_over(keys).items():
+            print(f"{name}, secured: {missed} frames ({5 * missed} ms) missed at the take-over")
+            self.assertLessEqual(missed, LEASE_FRAMES, name)
+
+    def traces_of_take_over(self, keys=None):
+        secured = ("--set", f"security.directory={keys}") if keys else ()
         pipeline, log = self.start_logged(
             "launch", BIN / "quorient", "launch", CONFIGURATIONS / "demo.yaml", "--domain", self.domain, "--json",
-            "--set", "source.duration_s=60", "--set", "source.faults=[]", "--set", "expect=null",
+            "--set", "source.duration_s=60", "--set", "source.faults=[]", "--set", "expect=null", *secured,
         )
-        consumers = self.start_consumers()
+        consumers = self.start_consumers(keys)
         for _, log in consumers.values():
             self.eventually(lambda: any(sample.voter == 1 for sample in samples(log)), f"voter 1 in {log}")
-        status = json.loads(self.run_program("quorient", "status", "--domain", self.domain, "--json").stdout)
+        status = json.loads(self.run_program("quorient", "status", "--domain", self.domain, "--json", *(("--keys", keys) if keys else ())).stdout)
         process = next(service["process"] for service in status["services"] if service["name"] == "voter-1")
         self.kill(process)
         for _, log in consumers.values():
@@ -144,9 +162,7 @@ class Examples(InteropTest):
         self.stop(consumers)
         pipeline.send_signal(signal.SIGTERM)
         pipeline.wait(10)
-        traces = {name: self.take_over(log) for name, (_, log) in consumers.items()}
-        if TRACE:
-            pathlib.Path(TRACE).write_text(trace_page(traces))
+        return {name: self.take_over(log) for name, (_, log) in consumers.items()}
 
     def take_over(self, log):
         """@returns the lines around the change from the first voter to the second, and the frames that the consumer was not given."""

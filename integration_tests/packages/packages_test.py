@@ -28,7 +28,7 @@ class Installed(unittest.TestCase):
         assert installed.returncode == 0, installed.stderr
 
     def test_programs_explain_themselves_with_a_manual_page_and_the_demo_runs(self):
-        for program in ("quorient", "quorient-sensor", "quorient-fdi", "quorient-attitude", "quorient-voter"):
+        for program in ("quorient", "quorient-sensor", "quorient-fdi", "quorient-attitude", "quorient-voter", "quorient-monitor"):
             helped = run(self.prefix / "bin" / program, "--help")
             self.assertEqual(helped.returncode, 0, program)
             self.assertIn("Usage", helped.stdout)
@@ -37,6 +37,8 @@ class Installed(unittest.TestCase):
             self.assertIn(r"\-\-help", manual)
             self.assertNotIn(str(BUILD), manual, "the page names the build machine")
         self.assertIn(".SH LAUNCH", self.manual_of("quorient"))
+        with gzip.open(self.prefix / "share/man/man5/quorient-system.5.gz", "rt") as page:
+            self.assertIn("level_window: whole number, 1 to 32", page.read())
         launched = run(
             self.prefix / "bin/quorient", "launch", self.prefix / "share/quorient/demo.yaml", "--json", "--domain", 119,
             "--set", "source.duration_s=1", "--set", "expect=null", env=dict(os.environ, QUORIENT_RUN_DIR=str(self.folder / "run")),

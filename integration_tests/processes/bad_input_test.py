@@ -24,6 +24,33 @@ class SystemFile(ProcessTest):
         self.assertRegex(errors, r"system\.yaml:\d+:\d+: source\.motion\.k2: expected a number \[rad/s\], got '0.084 rad/s'")
         self.assertRegex(errors, r"\d problems, nothing started")
 
+    def test_refuses_a_key_that_stands_there_twice(self):
+        errors = self.refused(DEMO.replace("domain: 42", "domain: 42\ndomain: 43"))
+        self.assertRegex(errors, r"system\.yaml:\d+:1: domain: stands here a second time, first in line \d+")
+
+    def test_refuses_a_tab_in_plain_words(self):
+        self.assertRegex(self.refused(DEMO.replace("  id: 1", "\tid: 1")), r"system\.yaml:\d+:1: a tab indents this line")
+
+    def test_refuses_names_that_are_taken(self):
+        self.assertRegex(self.refused(DEMO.replace("name: voter-2", "name: voter-1")), r"voters\[1\]\.name: 'voter-1' is taken")
+        self.assertRegex(self.refused(DEMO.replace("name: voter-2", "name: fdi-a")), r"voters\[1\]\.name: 'fdi-a' is taken by the detector")
+
+    def test_refuses_a_directory(self):
+        result = self.run_program("quorient", "launch", self.run_directory, timeout=20)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("is a directory, expected a file", result.stderr)
+
+    def test_is_judged_by_check_as_by_a_start_and_starts_nothing(self):
+        wrong = self.write("wrong.yaml", DEMO.replace("rate_hz: 200", "rate_hz: fast"))
+        started = self.run_program("quorient", "launch", wrong, timeout=20)
+        checked = self.run_program("quorient", "check", wrong, timeout=20)
+        self.assertEqual((checked.returncode, checked.stdout, checked.stderr), (2, "", started.stderr))
+        right = self.run_program("quorient", "check", CONFIGURATIONS / "demo.yaml", timeout=20)
+        self.assertEqual((right.returncode, right.stderr), (0, ""))
+        effective = self.run_program("quorient", "check", self.write("effective.yaml", right.stdout), timeout=20)
+        self.assertEqual((effective.returncode, effective.stdout), (0, right.stdout))
+        self.assertEqual(list(self.run_directory.glob("*.heartbeat")) + list(self.run_directory.glob("*.log")), [], "something was started")
+
     def test_refuses_an_unknown_vendor(self):
         self.assertIn("opendds", self.refused(DEMO.replace("dds: fastdds", "dds: opendds", 1)))
 

@@ -1,4 +1,4 @@
-"""A service that is refused the priority, locked memory or processors it asks for reports that once and goes on without."""
+"""A service that is refused the priority, locked memory or processors it asks for reports that once and goes on without; spinning."""
 import os
 import resource
 import shutil
@@ -43,6 +43,46 @@ class RealTime(ProcessTest):
 
     def test_who_asks_for_nothing_is_refused_nothing(self):
         self.assertEqual(self.start_without_rights(), [])
+
+
+class Spinning(ProcessTest):
+    """`spin` of the sensor: its thread does not wait for messages. Told apart by what the kernel counts, whatever else the machine does."""
+
+    CPU_S = 0.5
+    WAITS = 20
+
+    def waits_and_cpu_s(self, process):
+        """Times that the main thread gave up the processor of its own accord, and the time it used."""
+        thread = f"/proc/{process.pid}/task/{process.pid}"
+        with open(f"{thread}/status") as status:
+            waits = next(int(line.split()[1]) for line in status if line.startswith("voluntary_ctxt_switches"))
+        with open(f"{thread}/stat") as stat:
+            fields = stat.read().rsplit(")", 1)[1].split()
+        return waits, (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def outcome(self, spin):
+        """Which comes first in a sensor that waits for its consumers: some processor time, or some waiting."""
+        process = self.start("quorient-sensor", CONFIGURATIONS / "demo.yaml", "--domain", self.domain,
+                             "--set", "sensor.wait_s=600", "--set", f"sensor.spin={spin}")
+        self.eventually(lambda: (self.run_directory / "sensor.heartbeat").exists(), "the sensor is up")
+        waits, cpu_s = self.waits_and_cpu_s(process)
+        reached = {}
+
+        def decided():
+            new_waits, new_cpu_s = self.waits_and_cpu_s(process)
+            reached.update(waits=new_waits - waits >= self.WAITS, cpu=new_cpu_s - cpu_s >= self.CPU_S)
+            return any(reached.values())
+
+        self.eventually(decided, "the sensor works or waits")
+        process.terminate()
+        process.communicate(timeout=10)
+        return reached
+
+    def test_sensor_that_is_told_to_spin_does_not_wait(self):
+        self.assertEqual(self.outcome("true"), {"waits": False, "cpu": True})
+
+    def test_sensor_that_is_not_told_to_spin_waits(self):
+        self.assertEqual(self.outcome("false"), {"waits": True, "cpu": False})
 
 
 if __name__ == "__main__":

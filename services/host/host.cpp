@@ -1,7 +1,6 @@
 #include "host.hpp"
 
 #include "quorient/runtime/log.hpp"
-#include "quorient/runtime/options.hpp"
 #include "quorient/runtime/realtime.hpp"
 #include "quorient/runtime/signals.hpp"
 
@@ -12,7 +11,7 @@ constexpr unsigned longest_leaving_s = 3;
 
 int run_role(int argc, char** argv, const Role& role)
 {
-    const auto options = runtime::parse_options(argc, argv, role.purpose, role.default_name);
+    const auto options = runtime::parse_options(argc, argv, role.purpose, role.default_name, role.switches);
     if (!options) return options.error().exit_code;
 
     const auto system =

@@ -2,6 +2,7 @@
 
 #include "quorient/bus/bus.hpp"
 #include "quorient/runtime/event_loop.hpp"
+#include "quorient/runtime/options.hpp"
 #include "quorient/system/system.hpp"
 
 #include <functional>
@@ -10,6 +11,7 @@
 #include <string_view>
 #include <tl/expected.hpp>
 #include <utility>
+#include <vector>
 
 namespace quorient::host {
 
@@ -45,6 +47,7 @@ struct Role {
     std::string purpose;       ///< one sentence, for --help
     std::string default_name;  ///< of its process in the system file; empty = --name is required
     FindProcess find;
+    std::vector<runtime::Switch> switches{};  ///< flags of this role alone
 };
 
 /// main() of a service: reads the command line and the system file, joins the bus, runs until it is told to stop.

@@ -1,10 +1,10 @@
 #include "describe.hpp"
 #include "quorient/attitude/levelling.hpp"
-#include "quorient/rotation/quaternion.hpp"
 #include "quorient/messages/meaning.hpp"
 #include "quorient/messages/name.hpp"
 #include "quorient/recording/merge.hpp"
 #include "quorient/recording/rest_statistics.hpp"
+#include "quorient/rotation/quaternion.hpp"
 #include "sources.hpp"
 
 #include <fmt/format.h>
@@ -192,6 +192,7 @@ tl::expected<ClusterDescription, std::string> describe_log(recording::Reader& re
             levelled = *attitude;
         }
     }
+    for (std::size_t axis = 0; settings.range > 0 && axis < description.axis_count; ++axis) description.range[axis] = settings.range;
     description.epoch = epoch;
     description.revision = 1;
     description.unit = settings.process.node.unit;

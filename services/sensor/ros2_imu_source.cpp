@@ -4,6 +4,7 @@
 #include "sources.hpp"
 
 #include <fmt/format.h>
+#include <cassert>
 
 namespace quorient::sensor {
 
@@ -25,6 +26,10 @@ public:
             static_cast<std::uint8_t>(settings.initial_attitude ? InitialAttitude::stated : InitialAttitude::unknown);
         if (settings.initial_attitude) description_.initial_attitude = *settings.initial_attitude;
         copy_text(settings.unit_name, description_.name);
+        for (const auto& fault : settings.source.scenario.faults) {
+            [[maybe_unused]] const auto added = faults_.add(fault);
+            assert(added);  // the loader has resolved it on this cluster
+        }
         if (settings.kind == SensorKind::accelerometer) return;  // moved to the body's origin already
         for (std::size_t axis = 0; axis < description_.axis_count; ++axis) {
             const auto& place = settings_.imus[description_.instrument[axis]].position_m;

@@ -36,7 +36,7 @@ SensorPublisher::SensorPublisher(const system::SensorSettings& settings, std::un
     node_.watch(
         bus::topics::frame.spec.name, [this] { return frames_.status(); }, true);
     loop.on(bus.subscribe(bus::topics::status), [this](const ServiceStatus& status) { on_status(status); });
-    node_.on_order([this](const FaultCommand& command) { on_command(command); });
+    node_.on_order({CommandAction::inject, CommandAction::clear}, [this](const FaultCommand& command) { on_command(command); });
     source_->attach(bus, loop);
     descriptions_.publish(source_->description());
     node_.set_state(ServiceState::ready);
@@ -61,8 +61,7 @@ void SensorPublisher::start()
         node_.report(EventCode::consumers_missing, Severity::warning_high, {source_->description().epoch, 0}, 0,
                      fmt::format("starts after {} s without {}", settings_.wait_s, fmt::join(missing_, ", ")));
     node_.report(EventCode::started, Severity::info, {source_->description().epoch, 0}, 0,
-                 fmt::format("{} {} at {:.4g} Hz", source_->description().axis_count,
-                             kind_of(source_->description()) == SensorKind::vessel_rates ? "channels" : "axes",
+                 fmt::format("{} {} at {:.4g} Hz", source_->description().axis_count, unit_kind(kind_of(source_->description())).axes,
                              1 / source_->description().interval_s));
     node_.set_state(ServiceState::running);
     start_ns_ = node_.clock().steady_ns();
@@ -132,7 +131,7 @@ void SensorPublisher::on_command(const FaultCommand& command)
             node_.report(EventCode::fault_injected, Severity::info, identity, command.axes, "will inject " + simulation::to_string(fault),
                          command.request);
         else node_.report(EventCode::command_refused, Severity::warning_low, identity, command.axes, added.error(), command.request);
-    } else if (action_of(command) == CommandAction::clear) {
+    } else {
         if (command.axes == 0) source_->faults().clear();
         else source_->faults().clear(command.axes);
         node_.report(EventCode::fault_cleared, Severity::info, identity, command.axes, "faults cleared", command.request);

@@ -57,8 +57,8 @@ std::string RunObserver::names_of(AxisMask axes) const
 
 double RunObserver::time_s(Identity identity) const
 {
-    const std::uint64_t after = system_.has_attitude() ? 1 : 0;  // increments end with their frame, a vessel's samples begin it
-    return static_cast<double>(identity.sequence + after) * (description_ ? description_->interval_s : system_.interval_s);
+    return static_cast<double>(identity.sequence + unit_kind(system_.sensor.kind).frame_end) *
+           (description_ ? description_->interval_s : system_.interval_s);
 }
 
 void RunObserver::on_description(const ClusterDescription& description)
@@ -140,8 +140,7 @@ void RunObserver::on_voted(const VotedAttitude& voted)
     last = voted.output_sequence;
     if (!voted_.heard || identity_of(voted) >= identity_of(voted_.latest)) voted_.latest = voted;
     voted_.heard = true;
-    const bool held =
-        level_of(voted) == VoteLevel::coasting || level_of(voted) == VoteLevel::lost;
+    const bool held = level_of(voted) == VoteLevel::coasting || level_of(voted) == VoteLevel::lost;
     if (held) return;
     if (voted.epoch >= newest_truth_.epoch && voted_sequences_[voted.epoch].insert(voted.sequence).second) ++voted_.frames;
     compare(identity_of(voted), voted.attitude, voted_.errors);

@@ -1,4 +1,5 @@
-/* Prints the voted attitude: usage: consumer_cyclonedds [DOMAIN]. One line per sample until SIGINT or SIGTERM. */
+/* Prints the voted attitude: usage: consumer_cyclonedds [DOMAIN [KEYS NAME]]. One line per sample until SIGINT or SIGTERM.
+   In a secured system: KEYS is the directory of `quorient keys`, NAME the consumer's identity in it. */
 #include <dds/dds.h>
 #include <signal.h>
 #include <stdio.h>
@@ -19,6 +20,41 @@ static dds_entity_t made(dds_entity_t entity, const char* what)
     exit(1);
 }
 
+static void set(dds_qos_t* qos, const char* property, const char* scheme, const char* folder, const char* file)
+{
+    char value[1024];
+    snprintf(value, sizeof value, "%s%s%s%s", scheme, folder, *folder ? "/" : "", file);
+    dds_qset_prop(qos, property, value);
+}
+
+/* DDS Security: the plug-ins, as Debian keeps them, and the files of an identity. */
+static dds_qos_t* secured(const char* keys, const char* name)
+{
+    static const char* const plugins[3][3] = {{"auth", "authentication", "libdds_security_auth.so"},
+                                              {"crypto", "crypto", "libdds_security_crypto.so"},
+                                              {"access", "access_control", "libdds_security_ac.so"}};
+    char property[128], shared[512], own[512];
+    dds_qos_t* qos = dds_create_qos();
+    for (int i = 0; i < 3; ++i) {
+        snprintf(property, sizeof property, "dds.sec.%s.library.path", plugins[i][0]);
+        set(qos, property, "", PLUGINS, plugins[i][2]);
+        snprintf(property, sizeof property, "dds.sec.%s.library.init", plugins[i][0]);
+        set(qos, property, "init_", "", plugins[i][1]);
+        snprintf(property, sizeof property, "dds.sec.%s.library.finalize", plugins[i][0]);
+        set(qos, property, "finalize_", "", plugins[i][1]);
+    }
+    snprintf(shared, sizeof shared, "%s/shared", keys);
+    snprintf(own, sizeof own, "%s/%s", keys, name);
+    set(qos, "dds.sec.auth.identity_ca", "file:", shared, "identity_ca.pem");
+    set(qos, "dds.sec.auth.identity_certificate", "file:", own, "cyclonedds.pem");
+    set(qos, "dds.sec.auth.private_key", "file:", own, "key.pem");
+    set(qos, "org.eclipse.cyclonedds.sec.auth.crl", "file:", shared, "revoked.pem");
+    set(qos, "dds.sec.access.permissions_ca", "file:", shared, "permissions_ca.pem");
+    set(qos, "dds.sec.access.governance", "file:", shared, "governance.p7s");
+    set(qos, "dds.sec.access.permissions", "file:", own, "permissions.p7s");
+    return qos;
+}
+
 int main(int argc, char** argv)
 {
     const dds_domainid_t domain = argc > 1 ? (dds_domainid_t)atoi(argv[1]) : 42;
@@ -31,7 +67,9 @@ int main(int argc, char** argv)
                            "</MaxAutoParticipantIndex></Discovery><Internal><GenerateKeyhash>true</GenerateKeyhash></Internal>"
                            "</Domain></CycloneDDS>"),
          "domain");
-    const dds_entity_t participant = made(dds_create_participant(domain, NULL, NULL), "participant");
+    dds_qos_t* security = argc > 3 ? secured(argv[2], argv[3]) : NULL;
+    const dds_entity_t participant = made(dds_create_participant(domain, security, NULL), "participant");
+    dds_delete_qos(security);
     const dds_entity_t topic =
         made(dds_create_topic(participant, &quorient_msgs_VotedAttitude_desc, "quorient/voted", NULL, NULL), "topic");
 

@@ -1,4 +1,5 @@
-// Prints the voted attitude: usage: consumer_fastdds [DOMAIN]. One line per sample until SIGINT or SIGTERM.
+// Prints the voted attitude: usage: consumer_fastdds [DOMAIN [KEYS NAME]]. One line per sample until SIGINT or SIGTERM.
+// In a secured system: KEYS is the directory of `quorient keys`, NAME the consumer's identity in it.
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <csignal>
@@ -11,6 +12,7 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <memory>
+#include <string>
 
 #include "quorient_msgsPubSubTypes.h"
 
@@ -42,13 +44,32 @@ static DomainParticipantQos on_loopback(unsigned domain)
     return qos;
 }
 
+/// DDS Security: the plug-ins, and the files of an identity.
+static void secure(DomainParticipantQos& qos, const std::string& keys, const std::string& name)
+{
+    const auto set = [&](const std::string& property, const std::string& value) { qos.properties().properties().emplace_back(property, value); };
+    const std::string shared = "file://" + keys + "/shared/", own = "file://" + keys + "/" + name + "/";
+    set("dds.sec.auth.plugin", "builtin.PKI-DH");
+    set("dds.sec.auth.builtin.PKI-DH.identity_ca", shared + "identity_ca.pem");
+    set("dds.sec.auth.builtin.PKI-DH.identity_certificate", own + "fastdds.pem");
+    set("dds.sec.auth.builtin.PKI-DH.private_key", own + "key.pem");
+    set("dds.sec.auth.builtin.PKI-DH.identity_crl", shared + "revoked.pem");
+    set("dds.sec.access.plugin", "builtin.Access-Permissions");
+    set("dds.sec.access.builtin.Access-Permissions.permissions_ca", shared + "permissions_ca.pem");
+    set("dds.sec.access.builtin.Access-Permissions.governance", shared + "governance.p7s");
+    set("dds.sec.access.builtin.Access-Permissions.permissions", own + "permissions.p7s");
+    set("dds.sec.crypto.plugin", "builtin.AES-GCM-GMAC");
+}
+
 int main(int argc, char** argv)
 {
     const unsigned domain = argc > 1 ? static_cast<unsigned>(std::atoi(argv[1])) : 42;
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
     auto* factory = DomainParticipantFactory::get_instance();
-    auto* participant = factory->create_participant(domain, on_loopback(domain));
+    auto joining = on_loopback(domain);
+    if (argc > 3) secure(joining, argv[2], argv[3]);
+    auto* participant = factory->create_participant(domain, joining);
     if (!participant) return std::fprintf(stderr, "cannot join domain %u\n", domain), 1;
     TypeSupport type{new quorient_msgs::VotedAttitudePubSubType};
     type.register_type(participant);
