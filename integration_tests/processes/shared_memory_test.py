@@ -225,10 +225,13 @@ class SharedMemory(ProcessTest):
         self.assertEqual(process.returncode, 1)
 
     def test_shared_memory_together_with_security_is_refused_by_both_vendors(self):
+        keys = self.run_directory / "keys"
+        made = self.run_program("quorient", "keys", DEMO, "--out", keys, "--domain", self.domain)
+        self.assertEqual(made.returncode, 0, made.stderr)
         for dds, transport in (("cyclonedds", "iceoryx"), ("fastdds", "shm")):
             with self.subTest(dds=dds):
                 refused = self.run_program(
-                    "quorient-fdi", DEMO, "--name", "fdi-a", "--domain", self.domain, *ONE_LANE, "--set", f"dds={dds}", "--set", f"transport={transport}", "--set", "security=true"
+                    "quorient-fdi", DEMO, "--name", "fdi-a", "--domain", self.domain, *ONE_LANE, "--set", f"dds={dds}", "--set", f"transport={transport}", "--set", f"security.directory={keys}",
                 )
                 self.assertEqual(refused.returncode, 2)
                 self.assertIn("in plain text", refused.stderr)
