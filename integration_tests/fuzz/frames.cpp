@@ -69,7 +69,7 @@ public:
             const auto& verdict = monitor_->assess(frame);
             REQUIRE((verdict.isolated_mask & ~all_axes(frame.axis_count)) == 0);
             REQUIRE(verdict.candidate_count <= max_candidates);
-            REQUIRE(verdict.state >= 1 && verdict.state <= 6);
+            REQUIRE(verdict.state >= octet(VerdictState::warming_up) && verdict.state <= octet(VerdictState::saturated));
             if (integrator_) integrator_->apply(verdict);
         }
         if (!integrator_) return;

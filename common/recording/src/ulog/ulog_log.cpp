@@ -30,8 +30,7 @@ bool is_ulog(Bytes beginning)
 UlogLog::UlogLog(Input input, std::string name) : input_(std::move(input)), name_(std::move(name))
 {
     format_ = "PX4 ULog";
-    input_.peek(file_header_size);
-    input_.take(file_header_size);
+    input_.take(std::min(file_header_size, input_.peek(file_header_size).size()));
 }
 
 tl::expected<std::unique_ptr<InstrumentLog>, std::string> UlogLog::open(Input input, std::string name)
