@@ -75,7 +75,7 @@ bool ImuAlignment::ready(std::int64_t now_ns) const
            std::ranges::any_of(heard_, [&](const Heard& heard) { return heard_for(heard) > second_ns; });
 }
 
-/// Of an even number, the middle one that is nearer to the clock so far: one of two that jumps does not take the clock with it.
+/// The median; with an even number, the middle one that is nearer to the clock so far: one of two that jumps does not take the clock with it.
 std::optional<std::int64_t> ImuAlignment::median_offset(std::int64_t now_ns) const
 {
     std::array<std::int64_t, max_axes> offsets{};

@@ -25,7 +25,7 @@ std::array<double, max_axes> gains(const system::SensorSettings& settings)
     return settings.source.log->calibration ? settings.source.log->calibration->gain : gain;
 }
 
-/// Of the log, or of the first of several: what its problems are reported by.
+/// The log's name, or that of the first of several: its problems are reported by it.
 const std::string& name_of(const system::SensorSettings& settings)
 {
     return settings.source.log->files.front();

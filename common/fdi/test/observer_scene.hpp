@@ -12,7 +12,7 @@
 
 namespace quorient::fdi::test {
 
-/// The vessel of methods.md 001 (m = 15, I_z = 8, x_G = 0.5, u_0 = 2), as numbers so that nothing of ours is its own witness.
+/// The vessel of docs/methods/observers.md (m = 15, I_z = 8, x_G = 0.5, u_0 = 2), as numbers so that nothing of ours is its own witness.
 inline LinearPlant paper_vessel()
 {
     LinearPlant plant;

@@ -168,7 +168,7 @@ TEST(ObserverDesign, tells_when_the_metric_would_name_the_wrong_channel)
     EXPECT_GT(good[0], 10);
     EXPECT_GT(good[1], 10);
 
-    // The vessel of methods.md with m = 10, I_z = 10, x_G = 0.5, u_0 = 3 and naive poles.
+    // A vessel with m = 10, I_z = 10, x_G = 0.5, u_0 = 3 and naive poles.
     LinearPlant other = paper_vessel();
     const Eigen::Matrix2d mass{{6.5, -2}, {0, 3}};
     other.a = -mass.inverse() * Eigen::Matrix2d{{-5, 23}, {-3, 8}};

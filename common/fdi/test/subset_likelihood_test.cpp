@@ -46,7 +46,7 @@ Rates rates(const std::string& layout, const DetectorSettings& settings, std::si
     return {100.0 * correct / trials, 100.0 * wrong / trials};
 }
 
-// The row "ML sequential" of methods.md: correct %, dodecahedron. Four standard errors of 6000 and 20000 trials together are 2.8.
+// The sequential likelihood decision: correct %, dodecahedron. Four standard errors of 6000 and 20000 trials together are 2.8.
 TEST(SubsetDetector, reaches_the_sequential_likelihood_decision_at_margin_0)
 {
     EXPECT_GT(rates("dodecahedron", with(0), 0, 0, 0, 1).correct, 99.9 - 0.3);

@@ -57,7 +57,7 @@ protected:
         while (loop_.dispatch()) continue;
     }
 
-    /// Of the events since this was last asked.
+    /// Codes of the events since this was last asked.
     std::vector<EventCode> codes()
     {
         std::vector<EventCode> codes;

@@ -43,7 +43,7 @@ protected:
 
     std::uint64_t newest() const { return rig.next_sequence() - 1; }
 
-    /// Of the last attitude from the one that was ordered, which a frame or so of the demo's motion may have turned on.
+    /// The angle of the last attitude to the one that was ordered, which a frame or so of the demo's motion may have turned on.
     double away_rad() const
     {
         double cosine = 0;

@@ -104,7 +104,7 @@ protected:
         rig.run(*integrator);
     }
 
-    /// Of the last attitude from the truth of its frame: one that waits for a verdict is not the newest.
+    /// The angle of the last attitude to the truth of its frame: one that waits for a verdict is not the newest.
     double away_rad() const { return angle_between(truth.at(rig.attitude().sequence), rig.attitude().attitude); }
 
     static constexpr std::uint64_t onset = 20;

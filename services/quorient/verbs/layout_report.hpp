@@ -7,7 +7,7 @@
 
 namespace quorient::cli {
 
-/// All figures of a cluster with some axes left out, in the fields of the verb's contract (cli.md); undefined ones are null.
+/// All figures of a cluster with some axes left out, in the fields of the verb's contract (docs/command-line.md); undefined ones are null.
 /// Axes and instruments keep their numbers: `axis` has those of the rows where some are left out.
 Json layout_json(const std::string& name, const geometry::SensorCluster& cluster, AxisMask used);
 

@@ -9,7 +9,7 @@ namespace quorient::cli {
 using namespace configuration;
 namespace {
 
-constexpr double default_threshold = 1e-3;  // of methods.md 001
+constexpr double default_threshold = 1e-3;  // docs/methods/observers.md
 
 }  // namespace
 

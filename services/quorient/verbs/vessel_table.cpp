@@ -18,7 +18,7 @@ struct Window {
 
 constexpr std::array<Window, 3> windows{{{"quiet 5-20 s", 5, 20, 0}, {"gyro 26-30 s", 26, 30, 0b10}, {"sway 60-70 s", 60, 70, 0b01}}};
 
-/// Of each window: C_a, C_g; then of the blind observers r_A1, r_A2, r_G1, r_G2. In the quiet window bounds.
+/// Rows are windows: C_a, C_g; then of the blind observers r_A1, r_A2, r_G1, r_G2. In the quiet window bounds.
 constexpr std::array<std::array<double, 6>, 3> published{{{8e-6, 1.1e-5, 1e-5, 1e-5, 2e-5, 2e-5},
                                                           {.001174, .025528, .007619, .002356, 1.2e-5, .010009},
                                                           {.005240, .000168, .009997, 4e-6, .002352, .006470}}};

@@ -62,7 +62,7 @@ public:
     std::size_t window() const { return window_; }
 
 private:
-    /// Of T: for one axis (one degree of freedom), for an instrument (three).
+    /// Limits of T: for one axis (one degree of freedom), for an instrument (three).
     struct Limits {
         double axis = 0;
         double instrument = 0;

@@ -15,7 +15,7 @@ constexpr double saturation = 0.975;
 /// … by a standard deviation of this times its range.
 constexpr double excess = 0.5;
 
-/// Of two covariances that differ by the directions of their axes alone.
+/// Two covariances that differ by less, as a share, are those of the same axes in other directions.
 constexpr double rounding = 1e-12;
 
 void weigh(const geometry::SensorCluster& cluster, const geometry::AxisVector& variance, InstrumentArray::Instrument& instrument)

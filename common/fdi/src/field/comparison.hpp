@@ -57,7 +57,7 @@ public:
     double frame_bound(std::size_t component) const { return frame_bound_[component]; }
 
 private:
-    /// Of one component.
+    /// The comparison of one component.
     struct Deviation {
         Parameters regressors;
         double weight;

@@ -17,7 +17,7 @@ constexpr double largest_ratio = 9;
 /// The mean of min(square / variance, largest_ratio) times this is 1.
 constexpr double truncation = 1.05;
 
-/// Of B, which is about 1 for arrays like the MIMU4444.
+/// The least B; for arrays like the MIMU4444 it is about 1.
 constexpr double least_moving = 0.25;
 
 }  // namespace
@@ -66,7 +66,7 @@ void NoiseScale::reckon(std::size_t component, double motion, InstrumentSet comp
     }
 }
 
-/// Of the pairs of compared instruments; the floor where there are none.
+/// The median over the pairs of compared instruments; the floor where there are none.
 double NoiseScale::median_without(std::size_t component, InstrumentSet compared, std::size_t left_out) const
 {
     std::array<double, max_instruments * max_instruments / 2> variances;

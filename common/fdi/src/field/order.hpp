@@ -15,7 +15,7 @@ inline void sort(double* values, std::size_t count)
     }
 }
 
-/// Of one value or more, which it sorts.
+/// The median of one value or more, which it sorts.
 inline double median(double* values, std::size_t count)
 {
     sort(values, count);

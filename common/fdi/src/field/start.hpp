@@ -48,7 +48,7 @@ private:
 
     bool is_rest(InstrumentSet ended) const;
     void check_class(InstrumentSet ended);
-    /// Of an instrument: the mean of its first second, or what it has read lately beyond its bias.
+    /// The level of an instrument: the mean of its first second, or what it has read lately beyond its bias.
     double level(std::size_t m, std::size_t component, InstrumentSet ended) const;
 
     std::size_t count_;

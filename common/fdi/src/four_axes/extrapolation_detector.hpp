@@ -54,7 +54,7 @@ public:
     static tl::expected<std::unique_ptr<ExtrapolationDetector>, std::string> make(const DetectorSettings& settings,
                                                                                   const geometry::SensorCluster& cluster);
 
-    /// Of the newest complete frame; nullptr while fewer than four moduli are known.
+    /// The prediction for the newest complete frame; nullptr while fewer than four moduli are known.
     const ModulusPrediction* prediction() const { return predicted_ ? &prediction_ : nullptr; }
     const std::array<double, axis_count>& triad_modulus() const { return triad_modulus_; }  ///< T1..T4 [unit of z]
     /// Index of the triad nearest to the prediction; meaningless without one.

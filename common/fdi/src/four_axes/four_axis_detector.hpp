@@ -39,7 +39,7 @@ public:
     void assess(const Measurement& measurement, Assessment& assessment) final;
     void exclude(AxisMask excluded) final;
     unsigned detectable_remaining() const final { return excluded_ == 0 ? 1 : 0; }
-    /// Of an excluded axis: what the other three make of it. It agrees where |v'z| was within the bound for `release_frames` frames, and
+    /// What the other three axes make of an excluded one. It agrees where |v'z| was within the bound for `release_frames` frames, and
     /// where nothing is known against it.
     std::optional<Expectation> expectation(std::size_t axis) const final;
     void reset() final;

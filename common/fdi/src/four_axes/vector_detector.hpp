@@ -8,7 +8,7 @@
 namespace quorient::fdi {
 
 /// Extrapolates the body *vector* (not its modulus, so no direction is blind) and takes the triad that lies nearest to it.
-/// [methods.md of the papers: "vector predictor"; the nearest triad leaves out the largest innovation |z_j - h_j theta_pred|]
+/// [docs/methods/four_axes.md, vector predictor; the nearest triad leaves out the largest innovation |z_j - h_j theta_pred|]
 ///
 /// The predictor is a least-squares polynomial over the newest frames of the history; its order (1 to 3) and length are chosen by
 /// trial: every candidate predicts, over the same horizon, frames of the history that are already known, and the one with the

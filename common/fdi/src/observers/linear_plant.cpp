@@ -16,7 +16,7 @@ tl::expected<void, std::string> check_size(const char* name, const Eigen::Matrix
     return {};
 }
 
-/// Of the size of the largest singular value: below it a direction counts as not seen.
+/// As a share of the largest singular value: below it a direction counts as not seen.
 constexpr double rank_tolerance = 1e-9;
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace quorient::fdi {
 /// K of the observer  xh' = A xh + B u + K (y - C xh)  whose error under a fault of `channel` moves in one direction:
 /// l = K e_channel is an eigenvector of A - K. For two states, both measured (C = I), with k11 = 1.
 ///
-/// Closed form (methods.md 001): l is parallel to a_channel - other_pole e_channel. With the feedthrough of the fault itself the
+/// Closed form (docs/methods/observers.md): l is parallel to a_channel - other_pole e_channel. With the feedthrough of the fault itself the
 /// measured residual r = C e + f still moves in span{e_channel, l}; see contrast().
 /// [paper 001, conditions 1 and 2, eqs 15-24 repaired]
 ///

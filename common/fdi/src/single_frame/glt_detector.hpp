@@ -22,7 +22,7 @@ public:
     static tl::expected<std::unique_ptr<GltDetector>, std::string> make(const DetectorSettings& settings,
                                                                             const geometry::SensorCluster& cluster);
 
-    /// Of the last frame, in (squared) units of z.
+    /// What the last frame gave, in (squared) units of z.
     double explained(std::size_t axis) const { return explained_(static_cast<Eigen::Index>(axis)); }  ///< D_i
     double parity(std::size_t axis) const;                                                            ///< p_i
 

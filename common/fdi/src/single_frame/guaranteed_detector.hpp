@@ -43,7 +43,7 @@ public:
     static tl::expected<std::unique_ptr<GuaranteedDetector>, std::string> make(const DetectorSettings& settings,
                                                                        const geometry::SensorCluster& cluster);
 
-    /// Of the last frame; unit of z throughout.
+    /// What the last frame gave; unit of z throughout.
     bool empty() const { return feasible_.none(); }
     std::size_t feasible_count() const { return feasible_.count(); }
     std::size_t set_count() const { return set_count_; }  ///< all sets w, in lexicographic order

@@ -31,7 +31,7 @@ public:
     static tl::expected<std::unique_ptr<InvariantsDetector>, std::string> make(const DetectorSettings& settings,
                                                                        const geometry::SensorCluster& cluster);
 
-    /// Of the last frame: |v'z| of each quadruple in lexicographic order, coplanar quadruples left out; and whether it passes.
+    /// In the last frame: |v'z| of each quadruple in lexicographic order, coplanar quadruples left out; and whether it passes.
     std::span<const double> values() const { return values_; }
     std::span<const std::uint8_t> passed() const { return passed_; }
 

@@ -246,7 +246,7 @@ void SubsetDetector::judge(const geometry::AxisVector& z, Assessment& assessment
     }
 }
 
-/// Of S0 minus what is explained.
+/// Rounding error of S0 minus what is explained.
 double SubsetDetector::rounding() const
 {
     return 64 * std::numeric_limits<double>::epsilon() * sum_of_squares_;

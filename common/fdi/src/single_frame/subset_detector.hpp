@@ -16,7 +16,7 @@ namespace quorient::fdi {
 
 /// Exhaustive subset likelihood: every set w of up to K faulty axes (or whole instruments) is tried, and what it leaves,
 ///   S_w = S0 - r_w' (P_ww)^-1 r_w   (in units of sigma^2),
-/// is the log-likelihood ratio of "w" against "anything". [methods.md, best achievable rate; for one axis this is GltDetector]
+/// is the log-likelihood ratio of "w" against "anything". [docs/methods/subset_likelihood.md; for one axis this is GltDetector]
 ///
 /// Sequential: S0 within the chi-square limit of q degrees is healthy; else the smallest size at which some S_w is within the limit of
 /// q - rank(P_ww) degrees decides, and the smallest S_w of that size is named, unless the margin M forbids it:

@@ -26,7 +26,7 @@ public:
     static tl::expected<std::unique_ptr<VotingDetector>, std::string> make(const DetectorSettings& settings,
                                                                    const geometry::SensorCluster& cluster);
 
-    /// Of the last frame.
+    /// Pairs that passed in the last frame.
     std::size_t passed_count() const { return passed_count_; }
     std::size_t pair_count() const { return passed_.size(); }
 

@@ -7,7 +7,7 @@
 namespace quorient::fdi {
 namespace {
 
-/// Of the information matrix: below it the axes lie almost in a plane.
+/// Determinant of the information matrix: below it the axes lie almost in a plane.
 constexpr double least_determinant = 1e-3;
 
 }  // namespace

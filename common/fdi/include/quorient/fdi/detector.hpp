@@ -88,7 +88,7 @@ public:
     /// How many further simultaneous axis faults can be detected with the axes that are left.
     virtual unsigned detectable_remaining() const = 0;
 
-    /// Of any axis in the newest frame. @returns nothing where the method keeps no watch on excluded axes, or cannot say in this frame.
+    /// What the method expects of an axis in the newest frame. @returns nothing where the method keeps no watch on excluded axes, or cannot say in this frame.
     virtual std::optional<Expectation> expectation(std::size_t) const { return std::nullopt; }
 
     /// The method's own figures of its newest frame, beside those of the assessment; one of the same name replaces it. Allocates.

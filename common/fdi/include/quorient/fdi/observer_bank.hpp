@@ -42,7 +42,7 @@ inline constexpr settings::Bounds sigma_bounds = settings::not_negative;
 /// A number of observers that run side by side on the same samples: what each expects, and how far the samples are from it.
 ///
 /// Observer:  xh' = (A - K C) xh + B u + K y,  r = y - C xh, with y and u held over an interval (exact discretisation).
-/// For y = x + f the residual is r = C e + f, feedthrough included. [paper 001, eqs 10-12 corrected, methods.md 001]
+/// For y = x + f the residual is r = C e + f, feedthrough included. [paper 001, eqs 10-12 corrected, docs/methods/observers.md]
 ///
 /// Limit of a residual: z sigma_r + h/2 |dr/dh| + model_error * sum over the entries p of A and B of |dr/dp| |p|.
 /// sigma_r is the residual's standard deviation, propagated from the start (noisy samples) to its stationary value, z the normal

@@ -41,7 +41,7 @@ struct Exclusions : std::array<std::uint64_t, max_axes> {
         return renewed;
     }
 
-    /// Of these axes alone.
+    /// The exclusions of these axes alone.
     constexpr Exclusions of(AxisMask axes) const
     {
         Exclusions part;

@@ -67,7 +67,7 @@ public:
     /// The next frame to handle, in order; nothing when all are handled. Valid until the next call.
     const Accepted* next();
 
-    /// Of the frames now being handled; nothing before the first.
+    /// The description of the frames now being handled; nothing before the first.
     const ClusterDescription* description() const { return current_ ? &*current_ : nullptr; }
 
     /// A description is here, whether or not frames are.
