@@ -43,6 +43,30 @@ TEST(LocalBus, keeps_the_newest_where_nobody_takes)
     EXPECT_EQ(received.sequence, 6U);
 }
 
+TEST(LocalBus, keeps_the_newest_of_each_writer)
+{
+    LocalHub hub;
+    const auto bus = hub.open();
+    auto subscription = bus->subscribe(topics::diagnosis);  // depth 1
+    auto first = bus->advertise(topics::diagnosis);
+    auto second = bus->advertise(topics::diagnosis);
+    FaultDiagnosis sent;
+    for (sent.sequence = 1; sent.sequence <= 3; ++sent.sequence) {
+        sent.detector = 1;
+        first.publish(sent);
+        sent.detector = 2;
+        second.publish(sent);
+    }
+
+    FaultDiagnosis received;
+    for (const std::uint32_t detector : {1U, 2U}) {
+        ASSERT_TRUE(subscription.take(received));
+        EXPECT_EQ(received.detector, detector);
+        EXPECT_EQ(received.sequence, 3U);
+    }
+    EXPECT_FALSE(subscription.take(received));
+}
+
 TEST(LocalBus, gives_a_late_joiner_the_history_of_latched_topics_only)
 {
     LocalHub hub;

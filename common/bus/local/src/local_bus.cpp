@@ -1,8 +1,10 @@
 #include "quorient/bus/local_bus.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <deque>
+#include <iterator>
 #include <map>
 #include <string>
 #include <vector>
@@ -11,7 +13,10 @@ namespace quorient::bus {
 
 namespace {
 
-using Sample = std::vector<std::byte>;
+struct Sample {
+    const void* writer = nullptr;
+    std::vector<std::byte> content;
+};
 
 /// One topic: its readers, and the history for late joiners.
 struct Channel {
@@ -20,16 +25,20 @@ struct Channel {
     std::uint32_t writers = 0;
 };
 
-void append(std::deque<Sample>& queue, const void* message, const TopicSpec& topic)
+/// Keeps the last samples of each writer, as DDS keeps those of each instance: here every writer writes one.
+void append(std::deque<Sample>& queue, const void* writer, const void* message, const TopicSpec& topic)
 {
-    // A full queue gives up its oldest sample, and its memory serves the new one.
+    const auto depth = static_cast<std::ptrdiff_t>(topic.qos.depth);
     Sample sample;
-    if (queue.size() >= static_cast<std::size_t>(topic.qos.depth)) {
-        sample = std::move(queue.front());
-        queue.pop_front();
+    if (std::ssize(queue) >= depth && std::ranges::count(queue, writer, &Sample::writer) >= depth) {
+        // The writer's oldest sample leaves, and its memory serves the new one.
+        const auto oldest = std::ranges::find(queue, writer, &Sample::writer);
+        sample = std::move(*oldest);
+        queue.erase(oldest);
     }
-    sample.resize(topic.size);
-    std::memcpy(sample.data(), message, topic.size);
+    sample.writer = writer;
+    sample.content.resize(topic.size);
+    std::memcpy(sample.content.data(), message, topic.size);
     queue.push_back(std::move(sample));
 }
 
@@ -52,8 +61,8 @@ public:
 
     bool write(const void* message) override
     {
-        if (topic_.qos.transient_local) append(channel_.history, message, topic_);
-        for (auto* queue : channel_.queues) append(*queue, message, topic_);
+        if (topic_.qos.transient_local) append(channel_.history, this, message, topic_);
+        for (auto* queue : channel_.queues) append(*queue, this, message, topic_);
         return true;
     }
 
@@ -80,7 +89,7 @@ public:
     bool take(void* message) override
     {
         if (queue_.empty()) return false;
-        std::memcpy(message, queue_.front().data(), size_);
+        std::memcpy(message, queue_.front().content.data(), size_);
         queue_.pop_front();
         return true;
     }
