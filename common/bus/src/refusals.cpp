@@ -4,14 +4,14 @@
 
 namespace quorient::bus {
 
-void Refusals::add(std::string text)
+void Refusals::add(RefusalReason reason, std::string text)
 {
     const std::lock_guard lock{mutex_};
     if (known_.size() == most || !known_.insert(text).second) return;
-    new_.push_back(std::move(text));
+    new_.push_back({reason, std::move(text)});
 }
 
-std::vector<std::string> Refusals::take()
+std::vector<Refusal> Refusals::take()
 {
     const std::lock_guard lock{mutex_};
     return std::exchange(new_, {});

@@ -247,8 +247,9 @@ void Node::look_at_identity()
 
 void Node::look_at_refusals()
 {
-    for (const auto& refusal : bus_.refusals())
-        report(EventCode::security, Severity::warning_high, {status_.epoch, status_.sequence}, 0, refusal);
+    for (const auto& [reason, text] : bus_.refusals())
+        report(reason == bus::RefusalReason::security ? EventCode::security : EventCode::other_contract, Severity::warning_high,
+               {status_.epoch, status_.sequence}, 0, text);
 }
 
 void Node::publish_status()

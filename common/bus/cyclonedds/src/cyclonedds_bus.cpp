@@ -1,5 +1,7 @@
 #include "quorient/bus/cyclonedds_bus.hpp"
 
+#include "contract_check.hpp"
+#include "quorient/bus/contract.hpp"
 #include "quorient/bus/iceoryx_guard.hpp"
 #include "quorient/bus/roudi.hpp"
 #include "quorient/messages/meaning.hpp"
@@ -188,8 +190,8 @@ private:
 
 class CycloneReader final : public Reader {
 public:
-    CycloneReader(Entity reader, TypeId type, Transport asked, bool secured)
-        : reader_(std::move(reader)), type_(type), asked_(asked), secured_(secured)
+    CycloneReader(Entity reader, TypeId type, Transport asked, bool secured, Refusals& refusals)
+        : reader_(std::move(reader)), type_(type), asked_(asked), secured_(secured), contracts_(reader_.handle(), refusals)
     {
     }
 
@@ -201,6 +203,7 @@ public:
         while (dds_take(reader_.handle(), samples, &info, 1, 1) == 1) {
             if (!info.valid_data) continue;
             writer_ = info.publication_handle;
+            if (!contracts_.accepts(writer_)) continue;
             return true;
         }
         return false;
@@ -223,6 +226,7 @@ private:
     TypeId type_;
     Transport asked_;
     bool secured_;
+    cyclonedds::ContractCheck contracts_;
     dds_instance_handle_t writer_ = 0;  ///< the writer of the sample taken last
 };
 
@@ -246,7 +250,13 @@ public:
 
     Vendor vendor() const override { return Vendor::cyclonedds; }
 
-    std::vector<std::string> refusals() override { return secured_ ? cyclonedds::library_refusals().take() : std::vector<std::string>{}; }
+    std::vector<Refusal> refusals() override
+    {
+        auto all = refusals_.take();
+        if (!secured_) return all;
+        for (auto& refusal : cyclonedds::library_refusals().take()) all.push_back(std::move(refusal));
+        return all;
+    }
 
     bool shared_memory_lost() const override { return roudi_life_ != 0 && roudi_life() != roudi_life_; }
 
@@ -268,7 +278,7 @@ private:
         const auto condition = dds_create_readcondition(reader.handle(), DDS_ANY_STATE);
         if (condition < 0 || dds_waitset_attach(waitset_.handle(), condition, 0) < 0)
             throw Error(fmt::format("Cyclone DDS: {}: cannot wait for data", topic.name));
-        return std::make_unique<CycloneReader>(std::move(reader), topic.type, asked, secured_);
+        return std::make_unique<CycloneReader>(std::move(reader), topic.type, asked, secured_, refusals_);
     }
 
     dds_entity_t topic_of(const TopicSpec& spec)
@@ -287,6 +297,7 @@ private:
     Entity participant_;
     Entity waitset_;
     std::map<std::string, dds_entity_t> topics_;
+    Refusals refusals_;  ///< by this bus's readers
 };
 
 /// Most participants of one host and domain by RTPS's ports [RTPS 9.6.1.1]. Unicast discovery sends to each port, so it probes fewer.
@@ -353,6 +364,8 @@ tl::expected<std::unique_ptr<Bus>, std::string> open_cyclonedds(const Settings& 
 
     const QosHandle qos{dds_create_qos()};
     dds_qset_entity_name(qos.get(), settings.participant.c_str());
+    const auto announcement = contract_announcement();
+    dds_qset_userdata(qos.get(), announcement.data(), announcement.size());
     if (settings.security) {
         cyclonedds::library_refusals();  // reads the log from now on
         cyclonedds::secure(*qos, *settings.security);

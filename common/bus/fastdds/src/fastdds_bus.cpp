@@ -138,6 +138,13 @@ private:
     std::uint64_t refused_ = 0;
 };
 
+GuidPrefix prefix_of(const dds::InstanceHandle_t& endpoint)
+{
+    GuidPrefix guid{};
+    for (std::size_t i = 0; i < guid.size(); ++i) guid[i] = endpoint.value[i];
+    return guid;
+}
+
 class FastReader final : public Reader {
 public:
     FastReader(dds::Subscriber* subscriber, dds::DataReader* reader, dds::WaitSet& waitset, dds::TypeSupport type, const TopicSpec& topic,
@@ -167,6 +174,7 @@ public:
         while (reader_->take_next_sample(sample_, &info) == ReturnCode_t::RETCODE_OK) {
             if (!info.valid_data) continue;
             writer_ = info.publication_handle;
+            if (peers_.refuses(prefix_of(writer_))) continue;
             if (fastdds::is_ros2(topic_.type)) fastdds::ros2_from_vendor(topic_.type, sample_, message);
             else std::memcpy(message, sample_, topic_.size);
             return true;
@@ -186,9 +194,7 @@ public:
 
     Sender sender() override
     {
-        GuidPrefix guid{};
-        for (std::size_t i = 0; i < guid.size(); ++i) guid[i] = writer_.value[i];
-        return peers_.sender(guid);
+        return peers_.sender(prefix_of(writer_));
     }
 
 private:
@@ -229,10 +235,10 @@ public:
 
     Vendor vendor() const override { return Vendor::fastdds; }
 
-    std::vector<std::string> refusals() override
+    std::vector<Refusal> refusals() override
     {
-        if (!settings_.security) return {};
         auto all = peers_->refusals();
+        if (!settings_.security) return all;
         for (auto& refusal : fastdds::library_refusals().take()) all.push_back(std::move(refusal));
         return all;
     }

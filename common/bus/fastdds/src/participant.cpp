@@ -1,6 +1,7 @@
 #include "participant.hpp"
 
 #include "guarded_transport.hpp"
+#include "quorient/bus/contract.hpp"
 #include "quorient/bus/interfaces.hpp"
 #include "quorient/bus/roudi.hpp"
 #include "security.hpp"
@@ -106,6 +107,8 @@ dds::DomainParticipant* join(const Settings& settings, Peers& peers)
     dds::Log::SetVerbosity(dds::Log::Error);
     dds::DomainParticipantQos qos;
     qos.name(settings.participant);
+    const auto announcement = contract_announcement();
+    qos.user_data().data_vec().assign(announcement.begin(), announcement.end());
     if (settings.security) {
         secure(qos.properties(), *settings.security);
         library_refusals();  // reads the log from now on

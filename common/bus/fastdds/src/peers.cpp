@@ -1,5 +1,7 @@
 #include "peers.hpp"
 
+#include "quorient/bus/contract.hpp"
+
 #include <fmt/format.h>
 #include <algorithm>
 
@@ -27,16 +29,29 @@ void Peers::on_participant_discovery(eprosima::fastdds::dds::DomainParticipant*,
     const bool gone = discovered.status == ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
                       discovered.status == ParticipantDiscoveryInfo::DROPPED_PARTICIPANT;
     if (secured_ && !gone && discovered.info.security_attributes_ == 0)
-        refusals_.add(fmt::format("refuses '{}': it has no certificate", name));
+        refusals_.add(RefusalReason::security, fmt::format("refuses '{}': it has no certificate", name));
+    const auto contract = announced_contract(discovered.info.m_userData.data_vec());
+    const bool other = !gone && contract.value_or(wire_contract) != wire_contract;
+    if (other) refusals_.add(RefusalReason::other_contract, contract_refusal(name, *contract));
     const std::lock_guard lock{mutex_};
     if (gone) names_.erase(guid);
     else names_[guid] = name;
+    if (other) of_other_contract_.insert(guid);
+    else of_other_contract_.erase(guid);
+    refuses_any_ = !of_other_contract_.empty();
 }
 
 void Peers::onParticipantAuthentication(eprosima::fastdds::dds::DomainParticipant*, ParticipantAuthenticationInfo&& info)
 {
     if (info.status == ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT)
-        refusals_.add(fmt::format("refuses '{}': its certificate is not valid, or not its own", sender(prefix_of(info.guid)).name));
+        refusals_.add(RefusalReason::security, fmt::format("refuses '{}': its certificate is not valid, or not its own", sender(prefix_of(info.guid)).name));
+}
+
+bool Peers::refuses(const GuidPrefix& guid) const
+{
+    if (!refuses_any_) return false;
+    const std::lock_guard lock{mutex_};
+    return of_other_contract_.contains(guid);
 }
 
 Sender Peers::sender(const GuidPrefix& guid) const

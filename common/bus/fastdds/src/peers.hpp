@@ -5,19 +5,23 @@
 
 #include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <atomic>
 #include <map>
 #include <mutex>
+#include <set>
 #include <string>
 
 namespace quorient::bus::fastdds {
 
-/// The other participants, by the names that they announce. Fast DDS calls it from its own threads.
+/// The other participants, by the names and the wire contract that they announce. Fast DDS calls it from its own threads.
 class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
 public:
     explicit Peers(bool secured) : secured_(secured) {}
 
     Sender sender(const GuidPrefix& guid) const;
-    std::vector<std::string> refusals() { return refusals_.take(); }
+    /// Whether this participant announces another wire contract, so that its samples are not accepted. Without a lock while there is none.
+    bool refuses(const GuidPrefix& guid) const;
+    std::vector<Refusal> refusals() { return refusals_.take(); }
 
 private:
     void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant*,
@@ -28,6 +32,8 @@ private:
     bool secured_;
     mutable std::mutex mutex_;
     std::map<GuidPrefix, std::string> names_;
+    std::set<GuidPrefix> of_other_contract_;
+    std::atomic<bool> refuses_any_ = false;  ///< `of_other_contract_` is not empty
     Refusals refusals_;
 };
 

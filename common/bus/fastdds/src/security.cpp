@@ -18,7 +18,7 @@ public:
     void Consume(const dds::Log::Entry& entry) override
     {
         const std::string_view category = entry.context.category ? entry.context.category : "";
-        if (entry.kind == dds::Log::Kind::Error && category.starts_with("SECURITY")) refusals_.add("Fast DDS: " + entry.message);
+        if (entry.kind == dds::Log::Kind::Error && category.starts_with("SECURITY")) refusals_.add(RefusalReason::security, "Fast DDS: " + entry.message);
     }
 
 private:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "quorient/bus/refusals.hpp"
 #include "quorient/bus/sender.hpp"
 #include "quorient/bus/settings.hpp"
 #include "quorient/bus/topics.hpp"
@@ -105,8 +106,8 @@ public:
     /// process that starts later does not join them.
     virtual bool shared_memory_lost() const { return false; }
 
-    /// What DDS Security refused since the last call, each text once, partly in the vendor's language.
-    virtual std::vector<std::string> refusals() { return {}; }
+    /// Whom this bus refused since the last call: by DDS Security, or for another wire contract. Each text comes once.
+    virtual std::vector<Refusal> refusals() { return {}; }
 
 private:
     virtual std::unique_ptr<Writer> make_writer(const TopicSpec& topic, const WriterOptions& options) = 0;

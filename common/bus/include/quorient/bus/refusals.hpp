@@ -7,21 +7,30 @@
 
 namespace quorient::bus {
 
-/// Carries what DDS Security refused from a vendor's threads to the service's thread.
+/// Why samples of another participant, or the participant itself, are not accepted.
+enum class RefusalReason { security, other_contract };
+
+/// For an operator, partly in the vendor's language.
+struct Refusal {
+    RefusalReason reason = RefusalReason::security;
+    std::string text;
+};
+
+/// Carries refusals from a vendor's threads to the service's thread.
 class Refusals {
 public:
     /// Keeps each text once, at most a hundred of them: a refused peer tries again, and an attacker may use any number of names.
-    void add(std::string text);
+    void add(RefusalReason reason, std::string text);
 
-    /// The texts added since the last call.
-    std::vector<std::string> take();
+    /// Those added since the last call.
+    std::vector<Refusal> take();
 
 private:
     static constexpr std::size_t most = 100;
 
     std::mutex mutex_;
     std::set<std::string> known_;
-    std::vector<std::string> new_;
+    std::vector<Refusal> new_;
 };
 
 }  // namespace quorient::bus
