@@ -1,6 +1,7 @@
 #include "log_seeds.hpp"
 
 #include "writers/dataflash_writer.hpp"
+#include "writers/record_writer.hpp"
 #include "writers/sqlite_bag_writer.hpp"
 #include "writers/ulog_writer.hpp"
 
@@ -53,6 +54,20 @@ Seed ulog_of_many_topics()
     return writer.log.data;
 }
 
+/// Frames outside of chunks, so that a changed byte changes a frame and not a checksum.
+Seed unpacked_record()
+{
+    McapWriter writer;
+    McapWriter::schema(writer.log, 1, "quorient_msgs::SensorFrame", "omgidl");
+    McapWriter::schema(writer.log, 2, "quorient_msgs::ClusterDescription", "omgidl");
+    McapWriter::channel(writer.log, 1, 1, "quorient/frame");
+    McapWriter::channel(writer.log, 2, 2, "quorient/cluster");
+    McapWriter::message(writer.log, 2, 1, cdr_of(description_of(4)));
+    for (const auto& frame : frames_of(3)) McapWriter::message(writer.log, 1, 2, cdr_of(frame));
+    writer.finish();
+    return writer.log.data;
+}
+
 std::vector<Seed> tables()
 {
     const std::string rows = "1.00,1,2,3,0,0,1\n1.01,1.5,2,3,0,0.1,1\n1.02,-1,2,3,0,0,1\n";
@@ -73,7 +88,8 @@ std::vector<Seed> log_seeds(const std::string& target)
     if (target == "dataflash") return flash;
     if (target == "ulog") return px4;
     if (target == "csv") return tables();
-    const std::vector<Seed> bags{mcap_of_two_imus(12, ""), mcap_of_two_imus(12, "zstd"), mcap_of_two_imus(12, "lz4")};
+    const std::vector<Seed> bags{mcap_of_two_imus(12, ""), mcap_of_two_imus(12, "zstd"), mcap_of_two_imus(12, "lz4"), record_of(frames_of(4), 2),
+                                 unpacked_record()};
     if (target == "mcap") return bags;
     if (target == "times") return {Seed(512, 1), Seed(512, 17)};
     if (target == "sqlite") return {sqlite_bag_of_two_imus(4)};

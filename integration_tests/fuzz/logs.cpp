@@ -1,5 +1,6 @@
 #include "csv/csv_log.hpp"
 #include "dataflash/dataflash_log.hpp"
+#include "mcap/frame_reader.hpp"
 #include "mcap/mcap_log.hpp"
 #include "require.hpp"
 #include "ros/sqlite_bag.hpp"
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace quorient::fuzz {
@@ -50,6 +52,28 @@ void read_all(InstrumentLog& log, std::size_t size)
     REQUIRE(log.statistics().skipped_bytes <= size);
 }
 
+/// Reads the frames of a record to its end, whatever is in it.
+void read_frames(recording::Reader& reader, std::size_t size)
+{
+    recording::RecordedFrame frame;
+    std::int64_t before_ns = std::numeric_limits<std::int64_t>::min();
+    for (std::size_t calls = 0;; ++calls) {
+        REQUIRE(calls <= 64 + 64 * size);
+        const auto outcome = reader.next(frame);
+        if (outcome == ReadOutcome::end) break;
+        if (outcome == ReadOutcome::rejected) {
+            REQUIRE(!reader.problem().empty());
+            continue;
+        }
+        REQUIRE(frame.axis_count == reader.description().axis_count && frame.axis_count <= max_axes);
+        REQUIRE(frame.time_ns > before_ns && frame.interval_s > 0 && frame.valid_mask != 0);
+        REQUIRE(static_cast<double>(frame.lost_before) * frame.interval_s <= 3600);
+        for (std::size_t axis = 0; axis < frame.axis_count; ++axis) REQUIRE(std::isfinite(frame.increment[axis]));
+        before_ns = frame.time_ns;
+    }
+    REQUIRE(reader.next(frame) == ReadOutcome::end);
+}
+
 /// What an opener gives: a log, or words.
 void read_opened(tl::expected<std::unique_ptr<InstrumentLog>, std::string> log, std::size_t size)
 {
@@ -85,6 +109,10 @@ void mcap(const std::uint8_t* data, std::size_t size)
 {
     recording::mcap::McapLog log(input_of(data, size), "fuzz");
     read_all(log, most_from_chunks * size + 4096);
+    const auto record = recording::mcap::FrameReader::open(input_of(data, size), "fuzz");
+    if (!record) return;
+    if (*record) read_frames(***record, most_from_chunks * size + 4096);
+    else REQUIRE(!record->error().empty());
 }
 
 void sqlite(const std::uint8_t* data, std::size_t size)

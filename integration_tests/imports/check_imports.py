@@ -37,8 +37,9 @@ INNER = {
         "cli": set(),
         "report": {"cli"},
         "launch": {"cli", "report"},
+        "record": {"cli"},
         "replay": {"cli", "report"},
-        "verbs": {"cli", "launch", "replay", "report"},
+        "verbs": {"cli", "launch", "record", "replay", "report"},
     },
     "common/fdi/src": {
         "single_frame": set(),

@@ -86,6 +86,13 @@ std::uint64_t OutputFile::keep_whole_lines()
     return lines;
 }
 
+void OutputFile::keep_first(std::uint64_t bytes)
+{
+    stream_.close();
+    std::error_code unknown;
+    if (fs::is_regular_file(name_, unknown) && fs::file_size(name_, unknown) > bytes) fs::resize_file(name_, bytes, unknown);
+}
+
 void OutputFile::finish()
 {
     if (failure().empty() && stream_.is_open()) {

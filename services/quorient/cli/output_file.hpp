@@ -24,6 +24,9 @@ public:
     /// After a failure: cuts the file behind its last whole line. @returns how many lines it holds.
     std::uint64_t keep_whole_lines();
 
+    /// After a failure: cuts the file behind its first bytes.
+    void keep_first(std::uint64_t bytes);
+
     /// Ends the verb unless all that was written is on the disk.
     void finish();
 

@@ -5,6 +5,8 @@
 #include <lz4frame.h>
 #include <zlib.h>
 #include <zstd.h>
+#include <algorithm>
+#include <optional>
 
 namespace quorient::recording::test {
 
