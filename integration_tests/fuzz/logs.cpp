@@ -109,7 +109,8 @@ void mcap(const std::uint8_t* data, std::size_t size)
 {
     recording::mcap::McapLog log(input_of(data, size), "fuzz");
     read_all(log, most_from_chunks * size + 4096);
-    const auto record = recording::mcap::FrameReader::open(input_of(data, size), "fuzz");
+    Input input = input_of(data, size);
+    const auto record = recording::mcap::FrameReader::open(input, "fuzz");
     if (!record) return;
     if (*record) read_frames(***record, most_from_chunks * size + 4096);
     else REQUIRE(!record->error().empty());

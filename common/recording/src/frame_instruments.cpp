@@ -1,13 +1,15 @@
 #include "frame_instruments.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 
 namespace quorient::recording {
 namespace {
 
+template <class Frames>
 class FrameInstruments final : public InstrumentLog {
 public:
-    FrameInstruments(std::unique_ptr<MimuReader> frames, std::string format) : frames_(std::move(frames))
+    FrameInstruments(std::unique_ptr<Frames> frames, std::string format) : frames_(std::move(frames))
     {
         format_ = std::move(format);
         const ClusterDescription& description = frames_->description();
@@ -58,7 +60,7 @@ private:
         if (outcome == ReadOutcome::rejected) problem_ = frames_->problem();
     }
 
-    std::unique_ptr<MimuReader> frames_;
+    std::unique_ptr<Frames> frames_;
     RecordedFrame frame_;
     std::uint64_t samples_ = 0;
     std::size_t next_ = 0;  // instrument of the frame in hand
@@ -68,7 +70,17 @@ private:
 
 std::unique_ptr<InstrumentLog> frame_instruments(std::unique_ptr<MimuReader> frames, std::string format)
 {
-    return std::make_unique<FrameInstruments>(std::move(frames), std::move(format));
+    return std::make_unique<FrameInstruments<MimuReader>>(std::move(frames), std::move(format));
+}
+
+tl::expected<std::unique_ptr<InstrumentLog>, std::string> frame_instruments(std::unique_ptr<mcap::FrameReader> frames, const std::string& name)
+{
+    const ClusterDescription& description = frames->description();
+    bool triads = description.axis_count == 3 * description.instrument_count;
+    for (std::size_t axis = 0; axis < description.axis_count; ++axis) triads = triads && description.instrument[axis] == axis / 3;
+    if (!triads)
+        return tl::unexpected(fmt::format("{}: a record of {} single axes, and instruments are compared by three; replay reads it", name, description.axis_count));
+    return std::make_unique<FrameInstruments<mcap::FrameReader>>(std::move(frames), "Quorient's record");
 }
 
 }  // namespace quorient::recording

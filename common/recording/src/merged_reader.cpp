@@ -1,4 +1,6 @@
 #include "quorient/recording/merge.hpp"
+
+#include "mcap/record_parts.hpp"
 #include "readers.hpp"
 
 #include <fmt/format.h>
@@ -201,6 +203,9 @@ private:
 tl::expected<MergedLogs, std::string> open_logs(std::span<const std::filesystem::path> files)
 {
     if (files.empty()) return tl::unexpected(std::string("no log is named"));
+    if (files.size() > 1) {
+        if (auto parts = mcap::open_parts(files)) return MergedLogs{std::move(*parts), std::vector<ClockOffset>(files.size(), {0.0, 1.0})};
+    }
     auto leader = open_log(files.front());
     if (!leader) return tl::unexpected(leader.error());
     MergedLogs merged{nullptr, {{0.0, 1.0}}};

@@ -25,13 +25,21 @@ bool is_sqlite(Bytes beginning)
                       beginning.begin() + static_cast<std::ptrdiff_t>(std::min(beginning.size(), sqlite_magic.size())));
 }
 
+Opened open_mcap(Input input, const std::string& name)
+{
+    auto record = mcap::FrameReader::open(input, name);
+    if (!record) return std::make_unique<mcap::McapLog>(std::move(input), name);
+    if (!*record) return tl::unexpected(record->error());
+    return frame_instruments(std::move(**record), name);
+}
+
 Opened open_kind(Kind kind, Input input, const std::string& name, const LogOptions& options, std::size_t sniffed)
 {
     switch (kind) {
         case Kind::mimu4444: return frame_instruments(std::make_unique<MimuReader>(std::move(input), name), "MIMU4444");
         case Kind::dataflash: return std::make_unique<dataflash::BinaryLog>(std::move(input), name);
         case Kind::dataflash_text: return std::make_unique<dataflash::TextLog>(std::move(input), name);
-        case Kind::mcap: return std::make_unique<mcap::McapLog>(std::move(input), name);
+        case Kind::mcap: return open_mcap(std::move(input), name);
         case Kind::ulog: return ulog::UlogLog::open(std::move(input), name);
         case Kind::text: return csv::CsvLog::open(std::move(input), name, options);
         default: return tl::unexpected(fmt::format("{}: byte 0: {}", name, why_not(kind, sniffed)));

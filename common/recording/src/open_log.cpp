@@ -76,7 +76,7 @@ Opened open_log(const std::filesystem::path& file)
     const Kind kind = kind_of(bytes.first(std::min(sniffed_bytes, bytes.size())));
     if (kind == Kind::mimu4444) return std::make_unique<MimuReader>(std::move(*input), file.filename().string());
     if (kind == Kind::mcap) {
-        if (auto frames = mcap::FrameReader::open(std::move(*input), file.filename().string())) return std::move(*frames);
+        if (auto frames = mcap::FrameReader::open(*input, file.filename().string())) return std::move(*frames);
     }
     if (kind == Kind::text) return open_text(file, std::move(*input));
     return open_aligned(file);

@@ -1,8 +1,9 @@
 // Records of Quorient itself: what the writer wrote is read back bit for bit, whatever happened to the file.
 
 #include "mcap/frame_reader.hpp"
+#include "quorient/recording/merge.hpp"
 #include "writers/record_writer.hpp"
-#include "log_files.hpp"
+#include "instrument_log_test.hpp"
 
 #include <gmock/gmock.h>
 #include <cmath>
@@ -28,9 +29,15 @@ struct Opened {
     Log log;
 };
 
+auto open(ByteVector bytes)
+{
+    Input input(memory_source(std::move(bytes)));
+    return mcap::FrameReader::open(input, "record.mcap");
+}
+
 Opened read(ByteVector bytes)
 {
-    auto opened = mcap::FrameReader::open(Input(memory_source(std::move(bytes))), "record.mcap");
+    auto opened = open(std::move(bytes));
     if (!opened || !*opened) {
         ADD_FAILURE() << (opened ? opened->error() : "no record of Quorient");
         return {};
@@ -105,7 +112,7 @@ TEST(McapRecord, of_which_any_end_is_missing_gives_all_whole_chunks)
     const auto bytes = record_of(frames, 50);
     std::size_t most = 0;
     for (std::size_t size = 0; size < bytes.size(); size += 97) {
-        auto opened = mcap::FrameReader::open(Input(memory_source({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)})), "cut");
+        auto opened = open({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)});
         if (!opened || !*opened) {
             EXPECT_EQ(most, 0U) << "nothing is read of " << size << " bytes, and was of fewer";
             continue;
@@ -170,7 +177,7 @@ TEST(McapRecord, in_an_unknown_compression_is_refused_with_its_name)
     test::McapWriter::message(records, 77, 0, cdr_of(frame_of(0)));
     other.chunk(records, "brotli");
     other.finish();
-    auto opened = mcap::FrameReader::open(Input(memory_source(other.log.data)), "record.mcap");
+    auto opened = open(other.log.data);
     ASSERT_TRUE(opened);
     ASSERT_FALSE(*opened);
     EXPECT_THAT(opened->error(), HasSubstr("record.mcap: byte"));
@@ -248,13 +255,33 @@ TEST(McapRecord, leaves_out_an_axis_without_a_finite_value_and_refuses_other_byt
 
 TEST(McapRecord, is_not_seen_in_a_bag_of_ros)
 {
-    EXPECT_FALSE(mcap::FrameReader::open(Input(memory_source(test::mcap_of_two_imus(20, "zstd"))), "bag.mcap"));
+    EXPECT_FALSE(open(test::mcap_of_two_imus(20, "zstd")));
     Record without_frames;
     without_frames.add(description_of(4));
-    const auto opened = mcap::FrameReader::open(Input(memory_source(without_frames.finish())), "record.mcap");
+    const auto opened = open(without_frames.finish());
     ASSERT_TRUE(opened);
     ASSERT_FALSE(*opened);
     EXPECT_THAT(opened->error(), HasSubstr("no frame of gyros"));
+}
+
+TEST(McapRecord, of_triads_is_a_log_of_instruments_and_of_single_axes_none)
+{
+    auto description = description_of(6);
+    description.instrument_count = 2;
+    for (std::uint8_t axis = 0; axis < 6; ++axis) description.instrument[axis] = axis / 3;
+    auto frame = frame_of(0);
+    frame.axis_count = 6;
+    frame.valid_mask = 0b111111;
+    Record record;
+    record.add(description);
+    record.add(frame);
+    const auto samples = samples_of(record.finish());
+    EXPECT_EQ(samples.format, "Quorient's record");
+    ASSERT_EQ(samples.samples.size(), 2U);
+    EXPECT_EQ(samples.samples[1].rate_rad_s[0], frame.increment[3] / frame.interval_s);
+    const auto refused = open_instruments(record_of(frames_of(3)), "record.mcap");
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error(), HasSubstr("4 single axes"));
 }
 
 class McapRecordFile : public LogFiles {};
@@ -266,6 +293,31 @@ TEST_F(McapRecordFile, is_opened_as_a_log_of_frames)
     const auto reader = open_log(file);
     ASSERT_TRUE(reader) << reader.error();
     expect_same(read_all(**reader).frames, frames);
+}
+
+TEST_F(McapRecordFile, of_several_is_one_log_whatever_the_order_of_their_names)
+{
+    const auto frames = frames_of(90);
+    const auto part = [&](std::size_t begin, std::size_t end) { return record_of({frames.begin() + static_cast<std::ptrdiff_t>(begin), frames.begin() + static_cast<std::ptrdiff_t>(end)}); };
+    const std::vector<std::filesystem::path> files{write("b.mcap", part(62, 90)), write("a.mcap", part(0, 30)), write("c.mcap", part(29, 60))};
+    const auto merged = open_logs(files);
+    ASSERT_TRUE(merged) << merged.error();
+    auto expected = frames;
+    expected.erase(expected.begin() + 60, expected.begin() + 62);
+    const Log log = read_all(*merged->reader);
+    expect_same(log.frames, expected);
+    EXPECT_EQ(log.frames[60].lost_before, 2U) << "missing between two files";
+    EXPECT_EQ(merged->reader->statistics().lost, 2U);
+    EXPECT_EQ(merged->reader->description().axis[0][0], 1);
+
+    auto restarted = frame_of(0);
+    restarted.epoch += 1;
+    auto description = description_of(4);
+    description.epoch += 1;
+    Record other;
+    other.add(description);
+    other.add(restarted);
+    EXPECT_FALSE(open_logs(std::vector{files[1], write("other.mcap", other.finish())})) << "another epoch does not continue the first";
 }
 
 }  // namespace

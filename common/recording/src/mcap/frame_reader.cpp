@@ -61,11 +61,14 @@ bool is_attitude(const TruthState& truth)
 
 FrameReader::FrameReader(Input input, std::string name) : records_(std::move(input), statistics_), name_(std::move(name)) {}
 
-std::optional<tl::expected<std::unique_ptr<FrameReader>, std::string>> FrameReader::open(Input input, std::string name)
+std::optional<tl::expected<std::unique_ptr<FrameReader>, std::string>> FrameReader::open(Input& input, std::string name)
 {
     std::unique_ptr<FrameReader> reader(new FrameReader(std::move(input), std::move(name)));
     const Beginning beginning = reader->look();
-    if (!beginning.has_channel) return std::nullopt;
+    if (!beginning.has_channel) {
+        input = reader->records_.release();
+        return std::nullopt;
+    }
     if (!beginning.frame) {
         return tl::unexpected(reader->problem_.empty() ? fmt::format("{}: no frame of gyros in the first 64 MB", reader->name_) : reader->problem_);
     }
@@ -122,11 +125,13 @@ void FrameReader::begin_with(const SensorFrame& first, const std::vector<Cluster
         if (first.sequence != 0) description_.initial_attitude_known = octet(InitialAttitude::unknown);
     } else {
         description_.kind = first.kind;
+        description_.unit = first.unit;
         description_.axis_count = description_.instrument_count = first.axis_count;
         for (std::uint8_t axis = 0; axis < first.axis_count; ++axis) description_.instrument[axis] = axis;
         description_.interval_s = first.interval_s;
     }
     latest_ = first;
+    first_ = identity_of(first);
     problem_.clear();
     origin_ns_ = first.sample_time_ns - std::llround(first.interval_s * 1e9);
 }
@@ -170,6 +175,7 @@ ReadOutcome FrameReader::give(RecordedFrame& recorded)
     if (recorded.valid_mask != all_axes(frame.axis_count)) ++statistics_.incomplete;
     statistics_.duration_ns = recorded.time_ns;
     ++statistics_.frames;
+    given_sequence_ = frame.sequence;
     waiting_.pop_front();
     return ReadOutcome::frame;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "quorient/messages/identity.hpp"
 #include "quorient/messages/sensor_frame.hpp"
 #include "quorient/messages/truth_state.hpp"
 #include "quorient/recording/reader.hpp"
@@ -16,14 +17,18 @@ namespace quorient::recording::mcap {
 class FrameReader final : public Reader {
 public:
     /// Looks at the first 64 MB.
-    /// @returns nothing if they name no channel of frames; an error if there is no frame of gyros
-    static std::optional<tl::expected<std::unique_ptr<FrameReader>, std::string>> open(Input input, std::string name);
+    /// @returns nothing if they name no channel of frames, and then the input is at its beginning; an error if there is no frame of gyros
+    static std::optional<tl::expected<std::unique_ptr<FrameReader>, std::string>> open(Input& input, std::string name);
 
     /// The description is the file's own. Its biases are 0, since the publisher has subtracted them; its initial attitude is known only where the
     /// file begins with the epoch's first frame.
     ReadOutcome next(RecordedFrame& frame) override;
 
     double progress() const { return records_.progress(); }
+
+    Identity first() const { return first_; }                        ///< of the first frame
+    std::int64_t origin_ns() const { return origin_ns_; }            ///< where time_ns counts from, on the publisher's clock
+    std::uint64_t given_sequence() const { return given_sequence_; }  ///< of the frame that next() gave last
 
 private:
     enum class Topic { cluster, frame, truth };
@@ -64,7 +69,9 @@ private:
     std::map<std::uint16_t, std::string> schemas_;  // names
     std::map<std::uint16_t, Topic> topics_;         // by channel
     SensorFrame latest_;                            // the first frame until there is another; its epoch and unit are those of all
-    std::int64_t origin_ns_ = 0;                    // begin of the first frame's interval
+    Identity first_;
+    std::int64_t origin_ns_ = 0;  // begin of the first frame's interval
+    std::uint64_t given_sequence_ = 0;
     bool started_ = false;
     bool ended_ = false;
     std::deque<Waiting> waiting_;

@@ -78,6 +78,12 @@ void RecordStream::rewind()
     begin();
 }
 
+Input RecordStream::release()
+{
+    input_.rewind();
+    return std::move(input_);
+}
+
 RecordStream::Step RecordStream::next()
 {
     input_.take(std::exchange(held_, 0));

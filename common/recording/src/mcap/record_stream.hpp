@@ -26,6 +26,9 @@ public:
     /// Back to the first record.
     void rewind();
 
+    /// Gives the input back, at its beginning. The stream is of no use afterwards.
+    Input release();
+
     Opcode opcode() const { return opcode_; }
 
     /// Valid until the next call of next().

@@ -27,7 +27,7 @@ struct MergedLogs {
 /// split at these times as if their rates were constant within each of their intervals, so no rotation is lost or counted twice. Where a
 /// log has no data its axes are not valid. Logs that begin or end within one second of each other were switched on and off by hand:
 /// the common log begins when all have begun and ends with the first of them. Each log keeps its own mounting; `quorient calibrate`
-/// finds the mountings.
+/// finds the mountings. The files of one rotated record of Quorient are no different sensors: they are read one after the other.
 /// @returns an error as open_log and estimate_offset do, or if there are more than 24 axes.
 tl::expected<MergedLogs, std::string> open_logs(std::span<const std::filesystem::path> files);
 

@@ -1,0 +1,99 @@
+#include "record_parts.hpp"
+
+#include "open_input.hpp"
+
+#include <algorithm>
+
+namespace quorient::recording::mcap {
+namespace {
+
+class RecordParts final : public Reader {
+public:
+    /// @param parts  of one unit and epoch, in the order of their first frames
+    explicit RecordParts(std::vector<std::unique_ptr<FrameReader>> parts) : parts_(std::move(parts)), origin_ns_(parts_.front()->origin_ns())
+    {
+        description_ = parts_.front()->description();
+    }
+
+    ReadOutcome next(RecordedFrame& frame) override
+    {
+        while (at_ < parts_.size()) {
+            FrameReader& part = *parts_[at_];
+            const auto outcome = part.next(frame);
+            add_up();
+            if (outcome == ReadOutcome::rejected) problem_ = part.problem();
+            if (outcome == ReadOutcome::rejected) return outcome;
+            if (outcome == ReadOutcome::end) ++at_;
+            else if (continue_with(part, frame)) return outcome;
+        }
+        return ReadOutcome::end;
+    }
+
+private:
+    /// Puts a part's frame behind those of the parts before. @returns false where they have it already
+    bool continue_with(const FrameReader& part, RecordedFrame& frame)
+    {
+        const std::uint64_t sequence = part.given_sequence();
+        frame.time_ns += part.origin_ns() - origin_ns_;
+        if (given_ && sequence <= *given_) return false;
+        if (given_) frame.lost_before = sequence - *given_ - 1;
+        between_ += given_ && at_ != given_in_ ? frame.lost_before : 0;
+        given_ = sequence;
+        given_in_ = at_;
+        add_up();
+        statistics_.duration_ns = frame.time_ns;
+        return true;
+    }
+
+    void add_up()
+    {
+        const std::int64_t duration_ns = statistics_.duration_ns;
+        statistics_ = {};
+        for (const auto& part : parts_) {
+            const Statistics& other = part->statistics();
+            statistics_.records += other.records;
+            statistics_.frames += other.frames;
+            statistics_.checksum_failures += other.checksum_failures;
+            statistics_.malformed += other.malformed;
+            statistics_.lost += other.lost;
+            statistics_.nan += other.nan;
+            statistics_.incomplete += other.incomplete;
+            statistics_.repeated += other.repeated;
+            statistics_.irregular += other.irregular;
+            statistics_.skipped_bytes += other.skipped_bytes;
+            statistics_.truncated_bytes += other.truncated_bytes;
+        }
+        statistics_.lost += between_;
+        statistics_.duration_ns = duration_ns;
+    }
+
+    std::vector<std::unique_ptr<FrameReader>> parts_;
+    std::int64_t origin_ns_;
+    std::size_t at_ = 0;                  // part in hand
+    std::optional<std::uint64_t> given_;  // sequence of the frame given out last …
+    std::size_t given_in_ = 0;            // … and its part
+    std::uint64_t between_ = 0;           // frames missing between two parts
+};
+
+}  // namespace
+
+std::optional<std::unique_ptr<Reader>> open_parts(std::span<const std::filesystem::path> files)
+{
+    std::vector<std::unique_ptr<FrameReader>> parts;
+    for (const auto& file : files) {
+        auto input = std::filesystem::is_directory(file) ? tl::unexpected(std::string{}) : open_input(file);
+        if (!input || !is_mcap(input->peek(magic.size()))) return std::nullopt;
+        auto part = FrameReader::open(*input, file.filename().string());
+        if (!part || !*part) return std::nullopt;
+        parts.push_back(std::move(**part));
+    }
+    const auto first = [](const auto& part) { return part->first(); };
+    const auto belongs = [&](const auto& part) {
+        return first(part).epoch == first(parts.front()).epoch && part->description().unit == parts.front()->description().unit;
+    };
+    if (parts.empty() || !std::all_of(parts.begin(), parts.end(), belongs)) return std::nullopt;
+    std::sort(parts.begin(), parts.end(), [&](const auto& a, const auto& b) { return first(a) < first(b); });
+    return std::make_unique<RecordParts>(std::move(parts));
+}
+
+}  // namespace quorient::recording::mcap
