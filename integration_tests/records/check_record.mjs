@@ -4,7 +4,7 @@ import {parseIDL} from '@foxglove/omgidl-parser';
 import {MessageReader as IdlReader, MessageWriter as IdlWriter} from '@foxglove/omgidl-serialization';
 import {parse as parseRosMessage} from '@foxglove/rosmsg';
 import {MessageReader as RosReader, MessageWriter as RosWriter} from '@foxglove/rosmsg2-serialization';
-import {FrameTransform} from '@foxglove/schemas/jsonschema';
+import publishedSchemas from '@foxglove/schemas/jsonschema.js';
 import {createHash} from 'node:crypto';
 import fs from 'node:fs';
 import {isDeepStrictEqual} from 'node:util';
@@ -17,13 +17,20 @@ function bare(schema) {
   return Object.fromEntries(Object.entries(schema).filter(([key]) => key !== 'description' && key !== '$comment').map(([key, value]) => [key, bare(value)]));
 }
 
+function flat(message) {
+  const rows = (value) => (Array.isArray(value) && value.some((row) => typeof row === 'object') ? value.flatMap((row) => [...row]) : value);
+  return Object.fromEntries(Object.entries(message).map(([key, value]) => [key, rows(value)]));
+}
+
 function codecOf(channel, schema) {
   const text = new TextDecoder().decode(schema.data);
   const kind = `${schema.encoding}/${channel.messageEncoding}`;
   if (kind === 'omgidl/cdr') {
-    const types = parseIDL(text);
-    const [reader, writer] = [new IdlReader(schema.name, types), new IdlWriter(schema.name, types)];
-    return {decode: (bytes) => reader.readMessage(bytes), encode: (message) => writer.writeMessage(message)};
+    // The writer knows no arrays of arrays: it gets them as one row, which is the same on the wire.
+    const flatText = text.replace(/\[(\d+)\]\[(\d+)\]/g, (_, rows, columns) => `[${rows * columns}]`);
+    const reader = new IdlReader(schema.name, parseIDL(text));
+    const writer = new IdlWriter(schema.name, parseIDL(flatText));
+    return {decode: (bytes) => reader.readMessage(bytes), encode: (message) => writer.writeMessage(flat(message))};
   }
   if (kind === 'ros2msg/cdr') {
     const types = parseRosMessage(text, {ros2: true});
@@ -31,7 +38,7 @@ function codecOf(channel, schema) {
     return {decode: (bytes) => reader.readMessage(bytes), encode: (message) => writer.writeMessage(message)};
   }
   if (kind === 'jsonschema/json') {
-    if (schema.name !== 'foxglove.FrameTransform' || !isDeepStrictEqual(bare(JSON.parse(text)), bare(FrameTransform)))
+    if (schema.name !== 'foxglove.FrameTransform' || !isDeepStrictEqual(bare(JSON.parse(text)), bare(publishedSchemas.FrameTransform)))
       throw new Error(`${schema.name}: not the schema that Foxglove publishes`);
     return {decode: (bytes) => JSON.parse(new TextDecoder().decode(bytes)), encode: null};
   }

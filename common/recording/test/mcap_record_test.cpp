@@ -170,18 +170,21 @@ TEST(McapRecord, is_read_from_what_another_tool_made_of_it)
 
 TEST(McapRecord, in_an_unknown_compression_is_refused_with_its_name)
 {
-    test::Bytes records;
-    test::McapWriter other;
-    test::McapWriter::schema(other.log, 9, "quorient_msgs::SensorFrame", "omgidl");
-    test::McapWriter::channel(other.log, 77, 9, "quorient/frame");
-    test::McapWriter::message(records, 77, 0, cdr_of(frame_of(0)));
-    other.chunk(records, "brotli");
-    other.finish();
-    auto opened = open(other.log.data);
-    ASSERT_TRUE(opened);
-    ASSERT_FALSE(*opened);
-    EXPECT_THAT(opened->error(), HasSubstr("record.mcap: byte"));
-    EXPECT_THAT(opened->error(), HasSubstr("compressed by 'brotli'"));
+    for (const bool names_outside : {true, false}) {
+        test::Bytes records;
+        test::McapWriter other;
+        test::Bytes& names = names_outside ? other.log : records;
+        test::McapWriter::schema(names, 9, "quorient_msgs::SensorFrame", "omgidl");
+        test::McapWriter::channel(names, 77, 9, "quorient/frame");
+        test::McapWriter::message(records, 77, 0, cdr_of(frame_of(0)));
+        other.chunk(records, "brotli");
+        other.finish();
+        auto opened = open(other.log.data);
+        ASSERT_TRUE(opened);
+        ASSERT_FALSE(*opened);
+        EXPECT_THAT(opened->error(), HasSubstr("record.mcap: byte"));
+        EXPECT_THAT(opened->error(), HasSubstr("compressed by 'brotli'"));
+    }
 }
 
 TEST(McapRecord, counts_frames_that_are_missing_and_passes_over_those_of_others)

@@ -65,6 +65,7 @@ std::optional<tl::expected<std::unique_ptr<FrameReader>, std::string>> FrameRead
 {
     std::unique_ptr<FrameReader> reader(new FrameReader(std::move(input), std::move(name)));
     const Beginning beginning = reader->look();
+    if (!beginning.has_channel && reader->schemas_.empty() && reader->records_.met_unknown_compression()) return tl::unexpected(reader->problem_);
     if (!beginning.has_channel) {
         input = reader->records_.release();
         return std::nullopt;

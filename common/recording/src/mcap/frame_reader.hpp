@@ -17,7 +17,8 @@ namespace quorient::recording::mcap {
 class FrameReader final : public Reader {
 public:
     /// Looks at the first 64 MB.
-    /// @returns nothing if they name no channel of frames, and then the input is at its beginning; an error if there is no frame of gyros
+    /// @returns nothing if they name no channel of frames, and then the input is at its beginning; an error if there is no frame of
+    /// gyros, or nothing that can be decompressed
     static std::optional<tl::expected<std::unique_ptr<FrameReader>, std::string>> open(Input& input, std::string name);
 
     /// The description is the file's own. Its biases are 0, since the publisher has subtracted them; its initial attitude is known only where the

@@ -186,6 +186,7 @@ std::optional<RecordStream::Step> RecordStream::judge_chunk(const Chunk& fields)
     ++counts_.records;
     ++(broken ? counts_.checksum_failures : counts_.malformed);
     if (unknown || broken) chunk_.clear();
+    met_unknown_compression_ = met_unknown_compression_ || unknown;
     if (unknown) return refuse(fmt::format("a chunk compressed by '{}', which is not known", fields.compression));
     if (broken) return refuse("a chunk whose checksum is wrong: its messages are left out");
     return refuse(fmt::format("a chunk is cut: {} of {} bytes are read", chunk_.size(), fields.uncompressed_size));

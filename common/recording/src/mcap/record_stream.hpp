@@ -43,6 +43,9 @@ public:
     /// At the end: whether the writer had ended the file's data.
     bool ended_in_order() const { return ended_in_order_; }
 
+    /// Whether a chunk was refused because of how it is compressed.
+    bool met_unknown_compression() const { return met_unknown_compression_; }
+
     double progress() const { return input_.progress(); }
 
 private:
@@ -67,6 +70,7 @@ private:
     std::string problem_;
     bool ended_ = false;
     bool ended_in_order_ = false;
+    bool met_unknown_compression_ = false;
 };
 
 }  // namespace quorient::recording::mcap
