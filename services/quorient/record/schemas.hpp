@@ -9,9 +9,9 @@ namespace quorient::record {
 /// How a channel's messages are described in an MCAP file.
 struct Schema {
     std::string name;
-    std::string encoding;          ///< of the text
+    std::string encoding;          ///< how the text is written
     std::string text;
-    std::string message_encoding;  ///< of the messages
+    std::string message_encoding;  ///< how the messages are
 };
 
 /// A type of the wire contract, by its own part of the IDL file that the vendors' generators compile.

@@ -18,16 +18,16 @@ public:
     void add(const Message& message, std::uint32_t sequence);
 
     bool empty() const { return records_.size() == 0; }
-    std::size_t size() const { return records_.size(); }  ///< of its records, uncompressed
+    std::size_t size() const { return records_.size(); }  ///< uncompressed, of its records
 
     /// Where the parts of a chunk came to stand.
     struct Placed {
         std::uint64_t first_time_ns = 0;
         std::uint64_t last_time_ns = 0;
         std::uint64_t chunk_start = 0;   ///< in the file
-        std::uint64_t chunk_length = 0;  ///< of the record, with its header
+        std::uint64_t chunk_length = 0;  ///< the whole record, with its header
         std::map<std::uint16_t, std::uint64_t> index_start;  ///< in the file, of each channel's MessageIndex
-        std::uint64_t index_length = 0;                      ///< of all of them
+        std::uint64_t index_length = 0;                      ///< all of them together
         std::uint64_t compressed_size = 0;
         std::uint64_t uncompressed_size = 0;
     };

@@ -17,7 +17,7 @@ constexpr std::size_t most_waiting = 64;                       // frames that wa
 constexpr std::size_t most_descriptions = 64;                  // in the file's beginning
 constexpr double longest_interval_s = 3600;
 constexpr std::int64_t longest_record_ns = 1'000'000'000'000'000'000;
-constexpr double longest_gap_s = 3600;  // of lost frames; beyond it the recording was stopped and continued
+constexpr double longest_gap_s = 3600;  // frames that are lost; beyond it the recording was stopped and continued
 
 bool is_complete(const ClusterDescription& description)
 {

@@ -27,9 +27,9 @@ public:
 
     double progress() const { return records_.progress(); }
 
-    Identity first() const { return first_; }                        ///< of the first frame
+    Identity first() const { return first_; }                        ///< the first frame's
     std::int64_t origin_ns() const { return origin_ns_; }            ///< where time_ns counts from, on the publisher's clock
-    std::uint64_t given_sequence() const { return given_sequence_; }  ///< of the frame that next() gave last
+    std::uint64_t given_sequence() const { return given_sequence_; }  ///< that of the latest frame from next()
 
 private:
     enum class Topic { cluster, frame, truth };
@@ -38,7 +38,7 @@ private:
     struct Beginning {
         bool has_channel = false;
         std::optional<SensorFrame> frame;
-        std::vector<ClusterDescription> descriptions;  // of any unit
+        std::vector<ClusterDescription> descriptions;  // any unit's
     };
 
     FrameReader(Input input, std::string name);
