@@ -5,7 +5,7 @@
 #include "quorient/messages/meaning.hpp"
 #include "quorient/messages/name.hpp"
 #include "quorient/messages/words.hpp"
-#include "quorient/rotation/quaternion.hpp"
+#include "quorient/rotation/euler.hpp"
 
 #include <fmt/format.h>
 #include <cmath>
@@ -19,14 +19,10 @@ namespace {
 
 constexpr double degree = 180 / M_PI;
 
-/// Roll, pitch, yaw in degrees: rotations about x, y, z of the body, yaw first.
 Json euler_deg(const std::array<double, 4>& q)
 {
-    const auto [w, x, y, z] = q;
-    const double sine = std::clamp(2 * (w * y - z * x), -1.0, 1.0);
-    return {{"roll", rounded(std::atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)) * degree, 7)},
-            {"pitch", rounded(std::asin(sine) * degree, 7)},
-            {"yaw", rounded(std::atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)) * degree, 7)}};
+    const auto [roll, pitch, yaw] = rotation::roll_pitch_yaw(q);
+    return {{"roll", rounded(roll * degree, 7)}, {"pitch", rounded(pitch * degree, 7)}, {"yaw", rounded(yaw * degree, 7)}};
 }
 
 Json attitude_json(const Tick& tick)

@@ -168,7 +168,10 @@ void RunObserver::compare(Identity identity, const std::array<double, 4>& attitu
         if (waiting_.size() < most_waiting) waiting_.push_back({identity, attitude, &errors});
         return;
     }
-    if (truth->second.attitude_known) errors.add(identity, rotation::angle_between(attitude, truth->second.attitude));
+    if (!truth->second.attitude_known) return;
+    const double error_rad = rotation::angle_between(attitude, truth->second.attitude);
+    errors.add(identity, error_rad);
+    if (watch_ && (&errors == &voted_.errors || &errors == &without_rollback_)) watch_(errors, truth->second, error_rad);
 }
 
 void RunObserver::compare_waiting()

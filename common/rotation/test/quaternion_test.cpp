@@ -1,4 +1,4 @@
-#include "quorient/rotation/quaternion.hpp"
+#include "quorient/rotation/euler.hpp"
 
 #include <gtest/gtest.h>
 #include <limits>
@@ -68,6 +68,16 @@ TEST(Attitude, is_finite_and_of_unit_norm)
     EXPECT_FALSE(is_attitude({0, 0, 0, 0}));
     EXPECT_FALSE(is_attitude({std::numeric_limits<double>::quiet_NaN(), 0, 0, 1}));
     EXPECT_FALSE(is_attitude({std::numeric_limits<double>::infinity(), 0, 0, 0}));
+}
+
+TEST(RollPitchYaw, turns_the_body_by_yaw_first_then_pitch_then_roll)
+{
+    const std::array<double, 3> angles{0.3, -0.7, 2.1};
+    const Eigen::Matrix3d turned = (Eigen::AngleAxisd(angles[2], Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(angles[1], Eigen::Vector3d::UnitY()) *
+                                    Eigen::AngleAxisd(angles[0], Eigen::Vector3d::UnitX()))
+                                       .toRotationMatrix();
+    const auto found = roll_pitch_yaw(to_array(Quaternion(turned)));
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(found[i], angles[i], 1e-14) << i;
 }
 
 }  // namespace

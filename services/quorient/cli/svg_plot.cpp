@@ -1,12 +1,9 @@
 #include "svg_plot.hpp"
 
-#include "program.hpp"
+#include "svg_scale.hpp"
 
 #include <fmt/format.h>
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
 namespace quorient::cli {
 
@@ -18,82 +15,16 @@ constexpr double left = 80;
 constexpr double right = 210;  // the legend's room
 constexpr double top = 40;
 constexpr double bottom = 55;
-
-/// One axis of a chart: values to places on the page.
-class Scale {
-public:
-    Scale(bool logarithmic, double from_place, double to_place) : logarithmic_(logarithmic), from_place_(from_place), to_place_(to_place) {}
-
-    bool shows(double value) const { return std::isfinite(value) && (!logarithmic_ || value > 0); }
-
-    void include(double value)
-    {
-        if (!shows(value)) return;
-        lowest_ = std::min(lowest_, at(value));
-        highest_ = std::max(highest_, at(value));
-    }
-
-    /// Leaves room around the values, to whole decades on a logarithmic axis.
-    void settle()
-    {
-        if (lowest_ > highest_) lowest_ = highest_ = 0;
-        if (logarithmic_) {
-            lowest_ = std::floor(lowest_);
-            highest_ = std::max(lowest_ + 1, std::ceil(highest_));
-            return;
-        }
-        const double span = highest_ > lowest_ ? highest_ - lowest_ : 1.0;
-        step_ = std::pow(10, std::floor(std::log10(span / 3)));
-        if (span / step_ > 20) step_ *= 5;
-        else if (span / step_ > 8) step_ *= 2;
-        lowest_ = std::floor(lowest_ / step_) * step_;
-        highest_ = std::max(lowest_ + step_, std::ceil(highest_ / step_) * step_);
-    }
-
-    double place(double value) const { return from_place_ + (at(value) - lowest_) / (highest_ - lowest_) * (to_place_ - from_place_); }
-
-    std::vector<double> ticks() const
-    {
-        std::vector<double> values;
-        const double step = logarithmic_ ? 1.0 : step_;
-        const auto count = std::lround((highest_ - lowest_) / step);
-        for (long i = 0; i <= count; ++i) {
-            const double position = lowest_ + static_cast<double>(i) * step;
-            values.push_back(logarithmic_ ? std::pow(10.0, position) : position);
-        }
-        return values;
-    }
-
-private:
-    double at(double value) const { return logarithmic_ ? std::log10(value) : value; }
-
-    bool logarithmic_;
-    double from_place_;
-    double to_place_;
-    double lowest_ = std::numeric_limits<double>::infinity();
-    double highest_ = -std::numeric_limits<double>::infinity();
-    double step_ = 1;
-};
-
-std::string escaped(const std::string& text)
-{
-    std::string result;
-    for (const char c : text) {
-        if (c == '&') result += "&amp;";
-        else if (c == '<') result += "&lt;";
-        else result += c;
-    }
-    return result;
-}
+constexpr double most_ticks = 10;
 
 std::string frame_and_ticks(const Chart& chart, const Scale& x, const Scale& y, double offset)
 {
     const double base = offset + height - bottom;
-    std::string text = fmt::format("<text x='{}' y='{:.1f}' font-size='15'>{}</text>\n", left, offset + top - 14, escaped(chart.title));
+    std::string text = fmt::format("<text x='{}' y='{:.1f}' font-size='15'>{}</text>\n", left, offset + top - 14, markup_escaped(chart.title));
     text += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}</text>\n", (left + width - right) / 2, base + 40,
-                        escaped(chart.x_label));
+                        markup_escaped(chart.x_label));
     text += fmt::format("<text transform='translate(18,{:.1f}) rotate(-90)' text-anchor='middle'>{}</text>\n", (offset + top + base) / 2,
-                        escaped(chart.y_label));
+                        markup_escaped(chart.y_label));
     for (const double tick : x.ticks()) {
         const double place = x.place(tick);
         text += fmt::format(
@@ -129,7 +60,7 @@ std::string legend(const Chart& chart, double offset)
     for (const Series& series : chart.series) {
         if (series.name.empty()) continue;
         text += fmt::format("<rect x='{:.1f}' y='{:.1f}' width='14' height='4' fill='{}'/><text x='{:.1f}' y='{:.1f}'>{}</text>\n",
-                            width - right + 12, row - 4, series.colour, width - right + 32, row + 2, escaped(series.name));
+                            width - right + 12, row - 4, series.colour, width - right + 32, row + 2, markup_escaped(series.name));
         row += 15;
     }
     return text;
@@ -137,8 +68,8 @@ std::string legend(const Chart& chart, double offset)
 
 std::string draw(const Chart& chart, double offset)
 {
-    Scale x(chart.log_x, left, width - right);
-    Scale y(chart.log_y, offset + height - bottom, offset + top);
+    Scale x(chart.log_x ? Spacing::logarithmic : Spacing::linear, left, width - right);
+    Scale y(chart.log_y ? Spacing::logarithmic : Spacing::linear, offset + height - bottom, offset + top);
     for (const Series& series : chart.series) {
         for (const auto& [px, py] : series.points) {
             if (!x.shows(px) || !y.shows(py)) continue;
@@ -146,8 +77,8 @@ std::string draw(const Chart& chart, double offset)
             y.include(py);
         }
     }
-    x.settle();
-    y.settle();
+    x.settle(most_ticks);
+    y.settle(most_ticks);
     std::string text = frame_and_ticks(chart, x, y, offset);
     for (const Series& series : chart.series) text += drawn(series, x, y);
     return text + legend(chart, offset);

@@ -30,10 +30,11 @@ system::System offline(system::System system)
 
 }  // namespace
 
-Offline::Offline(system::System system, evaluation::RunObserver& observer, report::ReplayReport& report)
+Offline::Offline(system::System system, evaluation::RunObserver& observer, report::ReplayReport& report, report::RunTimeline* timeline)
     : system_(offline(std::move(system))), bus_(hub_.open()), loop_(*bus_, clock_, never_stop_)
 {
     observe(observer, report);
+    if (timeline) draw(*timeline);
     for (const auto& voter : system_.voters) voters_.push_back(std::make_unique<voter::VoterService>(voter, *bus_, loop_));
     for (const auto* integrator : system_.integrators())
         integrators_.push_back(std::make_unique<integrator::IntegratorService>(*integrator, *bus_, loop_));
@@ -60,6 +61,13 @@ void Offline::observe(evaluation::RunObserver& observer, report::ReplayReport& r
     loop_.on(bus_->subscribe(bus::topics::status), [this](const ServiceStatus& message) {
         if (!system_.lanes.empty() && message.service == system_.lanes.front().detector.process.node.service) intake_ = message;
     });
+}
+
+void Offline::draw(report::RunTimeline& timeline)
+{
+    loop_.on(bus_->subscribe(bus::topics::truth), [&](const TruthState& message) { timeline.on_truth(message); });
+    loop_.on(bus_->subscribe(bus::topics::verdict), [&](const FaultVerdict& message) { timeline.on_verdict(message); });
+    loop_.on(bus_->subscribe(bus::topics::voter_output), [&](const VotedAttitude& message) { timeline.on_voted(message); });
 }
 
 tl::expected<void, std::string> Offline::run()

@@ -5,6 +5,7 @@
 #include "quorient/bus/local_bus.hpp"
 #include "quorient/runtime/event_loop.hpp"
 #include "report/replay_report.hpp"
+#include "report/run_timeline.hpp"
 #include "quorient/evaluation/run_observer.hpp"
 #include "sensor_publisher.hpp"
 #include "voter_service.hpp"
@@ -20,7 +21,8 @@ namespace quorient::replay {
 /// Every process of a system in one thread, on the local bus, under virtual time: the same objects as live, bit-identical on every run.
 class Offline {
 public:
-    Offline(system::System system, evaluation::RunObserver& observer, report::ReplayReport& report);
+    /// @param timeline  may be absent
+    Offline(system::System system, evaluation::RunObserver& observer, report::ReplayReport& report, report::RunTimeline* timeline = nullptr);
 
     /// Until the source ends. @returns what is wrong with the source.
     tl::expected<void, std::string> run();
@@ -33,6 +35,7 @@ public:
 
 private:
     void observe(evaluation::RunObserver& observer, report::ReplayReport& report);
+    void draw(report::RunTimeline& timeline);
 
     system::System system_;
     runtime::VirtualClock clock_;

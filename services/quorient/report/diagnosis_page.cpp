@@ -44,12 +44,12 @@ public:
     std::string text() const
     {
         std::string page = "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><meta name='viewport' content='width=device-width, initial-scale=1'>\n";
-        page += fmt::format("<title>{}</title>\n<style>{}</style></head><body>\n", html_escaped(report_.log), style);
+        page += fmt::format("<title>{}</title>\n<style>{}</style></head><body>\n", markup_escaped(report_.log), style);
         const std::string_view state = report_.findings.empty() ? "" : name_of(report_.findings.front().certainty);
-        page += fmt::format("<h1 class='{}'>{}</h1>\n<p>{}: {:.1f} s</p>\n", state, html_escaped(report_.sentence), html_escaped(report_.log), report_.duration_s);
+        page += fmt::format("<h1 class='{}'>{}</h1>\n<p>{}: {:.1f} s</p>\n", state, markup_escaped(report_.sentence), markup_escaped(report_.log), report_.duration_s);
         page += findings();
         if (!report_.plot.bins.empty()) page += diagrams();
-        page += fmt::format("<h2>All figures</h2>\n<pre>{}</pre>\n", html_escaped(diagnosis_text(report_)));
+        page += fmt::format("<h2>All figures</h2>\n<pre>{}</pre>\n", markup_escaped(diagnosis_text(report_)));
         return page + "</body></html>\n";
     }
 
@@ -59,8 +59,8 @@ private:
         if (report_.findings.empty()) return "<h2>Findings</h2>\n<p>None.</p>\n";
         std::string text = "<h2>Findings</h2>\n<ul>\n";
         for (const auto& finding : report_.findings)
-            text += fmt::format("<li><b>{}</b>: {} {} {}</li>\n", name_of(finding.certainty), html_escaped(place_of(finding, report_)),
-                                html_escaped(words_of(finding)), time_of(finding, report_));
+            text += fmt::format("<li><b>{}</b>: {} {} {}</li>\n", name_of(finding.certainty), markup_escaped(place_of(finding, report_)),
+                                markup_escaped(words_of(finding)), time_of(finding, report_));
         return text + "</ul>\n";
     }
 
@@ -68,17 +68,17 @@ private:
     {
         std::string text = "<h2>Over time</h2>\n<p class='keys'>";
         for (std::size_t m = 0; m < compared_.size(); ++m)
-            text += fmt::format("<span><i style='background:{}'></i>{}</span>", colour(m), html_escaped(report_.instruments[compared_[m]].name));
+            text += fmt::format("<span><i style='background:{}'></i>{}</span>", colour(m), markup_escaped(report_.instruments[compared_[m]].name));
         text += "</p>\n";
-        if (!report_.findings.empty()) text += bar_strip("Findings", span_, bars());
-        for (int axis = 0; axis < 3; ++axis) text += band_strip(fmt::format("Rate about {}, all gyros", "xyz"[axis]), "deg/s", span_, rates(axis));
+        if (!report_.findings.empty()) text += svg_element(bar_strip("Findings", span_, bars()));
+        for (int axis = 0; axis < 3; ++axis) text += svg_element(band_strip(fmt::format("Rate about {}, all gyros", "xyz"[axis]), "deg/s", span_, rates(axis)));
         for (std::size_t m = 0; m < compared_.size(); ++m)
-            text += band_strip(fmt::format("{}: deviation from the others, and what it stays below while sound (dashed)", report_.instruments[compared_[m]].name),
-                               "deg/s", span_, residuals(m));
+            text += svg_element(band_strip(fmt::format("{}: deviation from the others, and what it stays below while sound (dashed)", report_.instruments[compared_[m]].name),
+                                           "deg/s", span_, residuals(m)));
         if (report_.attitude)
-            text += band_strip(fmt::format("Attitude with {0} among the others, and by {0} alone (dashed), against that without it",
-                                           report_.instruments[report_.attitude->left_out].name),
-                               "deg", span_, attitudes());
+            text += svg_element(band_strip(fmt::format("Attitude with {0} among the others, and by {0} alone (dashed), against that without it",
+                                                       report_.instruments[report_.attitude->left_out].name),
+                                           "deg", span_, attitudes()));
         return text;
     }
 

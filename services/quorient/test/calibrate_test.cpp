@@ -127,7 +127,7 @@ TEST(SvgPlot, leaves_out_what_an_axis_cannot_show)
     for (std::size_t at = text.find("<circle"); at != std::string::npos; at = text.find("<circle", at + 1)) ++marks;
     EXPECT_EQ(marks, 2U);
     EXPECT_EQ(text.find("nan"), std::string::npos);
-    EXPECT_THAT(svg({{"empty & <none>", "x", "y", false, false, {}}}), HasSubstr("empty &amp; &lt;none>"));
+    EXPECT_THAT(svg({{"empty & <none>", "x", "y", false, false, {}}}), HasSubstr("empty &amp; &lt;none&gt;"));
 }
 
 }  // namespace

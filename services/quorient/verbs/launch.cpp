@@ -2,11 +2,13 @@
 #include "../launch/roudi.hpp"
 #include "../launch/screen.hpp"
 #include "cli/json_output.hpp"
+#include "cli/output_file.hpp"
 #include "cli/system_options.hpp"
 #include "quorient/evaluation/run_observer.hpp"
 #include "quorient/runtime/event_loop.hpp"
 #include "quorient/runtime/heartbeat.hpp"
 #include "quorient/runtime/signals.hpp"
+#include "report/run_picture.hpp"
 #include "report/summary.hpp"
 #include "verbs.hpp"
 
@@ -33,6 +35,8 @@ struct LaunchOptions {
     SystemOptions system;
     std::optional<double> duration_s;
     std::vector<std::string> without;
+    std::string plot;
+    bool force = false;
     bool join = false;
     bool json = false;
 };
@@ -139,6 +143,7 @@ public:
           screen_(system, observer_, options.json),
           loop_(bus, clock_, runtime::termination_requested())
     {
+        if (!options.plot.empty()) begin_picture(bus);
         loop_.on(bus.subscribe(bus::topics::cluster), [this](const ClusterDescription& m) { observer_.on_description(m); });
         loop_.on(bus.subscribe(bus::topics::truth), [this](const TruthState& m) { observer_.on_truth(m); });
         loop_.on(bus.subscribe(bus::topics::verdict), [this](const FaultVerdict& m) { observer_.on_verdict(m); });
@@ -169,6 +174,15 @@ public:
     }
 
 private:
+    void begin_picture(bus::Bus& bus)
+    {
+        picture_.emplace(options_.plot, options_.force);
+        timeline_.emplace(system_, observer_);
+        loop_.on(bus.subscribe(bus::topics::truth), [this](const TruthState& m) { timeline_->on_truth(m); });
+        loop_.on(bus.subscribe(bus::topics::verdict), [this](const FaultVerdict& m) { timeline_->on_verdict(m); });
+        loop_.on(bus.subscribe(bus::topics::voter_output), [this](const VotedAttitude& m) { timeline_->on_voted(m); });
+    }
+
     void look_at_processes(runtime::Timer& end)
     {
         if (roudi_.lost()) {
@@ -200,6 +214,10 @@ private:
         else fmt::print("\n{}", report::summary_text(system_, observer_));
         for (const auto& failure : failures) fmt::print(stderr, "not as expected: {}\n", failure);
         if (!options_.json && system_.expectations.any() && failures.empty() && !failed_) fmt::print("as expected\n");
+        if (picture_) {
+            picture_->stream() << report::run_picture(system_, observer_, *timeline_);
+            picture_->finish();
+        }
         return failed_ || !failures.empty() ? 1 : 0;
     }
 
@@ -208,6 +226,8 @@ private:
     runtime::SystemClock clock_;
     evaluation::RunObserver observer_;
     launch::Screen screen_;
+    std::optional<OutputFile> picture_;
+    std::optional<report::RunTimeline> timeline_;
     runtime::EventLoop loop_;
     launch::Processes processes_;
     launch::Roudi roudi_;
@@ -246,6 +266,8 @@ void add_launch(Program& program)
         .value_name("S");
     verb.option("--without", options->without, "Do not start this process: it runs elsewhere, or a program of yours stands for it (repeatable)")
         .value_name("NAME");
+    verb.option("--plot", options->plot, "Draw the run over time at its end: attitude error, residuals, axes left out, level").value_name("FILE.svg");
+    add_force(verb, options->force);
     verb.flag("--join", options->join, "Start although processes of these names run on this domain already");
     verb.flag("--json", options->json, "The summary as JSON, nothing else on stdout");
     verb.footer(

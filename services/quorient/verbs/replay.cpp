@@ -1,7 +1,9 @@
 #include "replay/offline.hpp"
 #include "report/replay_report.hpp"
+#include "report/run_picture.hpp"
 #include "quorient/evaluation/run_observer.hpp"
 #include "cli/json_output.hpp"
+#include "cli/output_file.hpp"
 #include "cli/system_options.hpp"
 #include "verbs.hpp"
 
@@ -18,6 +20,8 @@ struct ReplayOptions {
     std::vector<std::string> logs;
     std::optional<double> from_s;
     std::optional<double> to_s;
+    std::string plot;
+    bool force = false;
     bool json = false;
 };
 
@@ -86,10 +90,14 @@ int replay(ReplayOptions options)
     if (options.from_s) options.system.set.push_back(fmt::format("source.from_s={}", *options.from_s));
     if (options.to_s) options.system.set.push_back(fmt::format("source.to_s={}", *options.to_s));
     const auto system = options.system.load_without_joining();
+    std::optional<OutputFile> picture;
+    if (!options.plot.empty()) picture.emplace(options.plot, options.force);
 
     evaluation::RunObserver run{system, evaluation::Shadow::off};
     report::ReplayReport report{system};
-    replay::Offline offline{system, run, report};
+    std::optional<report::RunTimeline> timeline;
+    if (picture) timeline.emplace(system, run);
+    replay::Offline offline{system, run, report, timeline ? &*timeline : nullptr};
     if (const auto done = offline.run(); !done) {
         fmt::print(stderr, "{}\n", done.error());
         return 2;
@@ -98,6 +106,10 @@ int replay(ReplayOptions options)
     const auto json = report_json(run, report, offline);
     if (options.json) fmt::print("{}\n", dump(json));
     else print_table(json);
+    if (picture) {
+        picture->stream() << report::run_picture(system, run, *timeline);
+        picture->finish();
+    }
     return 0;
 }
 
@@ -115,6 +127,8 @@ void add_replay(Program& program)
     options->system.add_replay_to(verb);
     verb.option("--from", options->from_s, "Begin here").within(settings::not_negative).value_name("S");
     verb.option("--to", options->to_s, "End here").within(settings::above_zero).value_name("S");
+    verb.option("--plot", options->plot, "Draw the run over time: attitude, residuals, axes left out, level").value_name("FILE.svg");
+    add_force(verb, options->force);
     verb.flag("--json", options->json, "One JSON object");
     verb.footer("Example:\n  quorient replay data.bin --system deploy/configurations/mimu4444.yaml --to 22 --json");
     verb.run([options] {

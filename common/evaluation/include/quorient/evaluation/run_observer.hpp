@@ -11,6 +11,7 @@
 #include "quorient/system/system.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -72,6 +73,10 @@ public:
     void on_attitude(const AttitudeState& attitude);
     void on_voted(const VotedAttitude& voted);
 
+    /// Called with each error of voted() and without_rollback() that is found from now on, and with the truth that it was found with.
+    using Watch = std::function<void(const Errors& of, const TruthState& truth, double error_rad)>;
+    void watch_errors(Watch watch) { watch_ = std::move(watch); }
+
     const std::vector<LaneRecord>& lanes() const { return lanes_; }
     const VotedRecord& voted() const { return voted_; }
 
@@ -116,6 +121,7 @@ private:
     std::vector<LaneRecord> lanes_;
     VotedRecord voted_;
     Errors without_rollback_;
+    Watch watch_;
     std::optional<attitude::Integrator> shadow_;
     std::optional<ClusterDescription> description_;
     std::unordered_map<std::uint64_t, TruthState> truth_;                         // by sequence, newest epoch only
