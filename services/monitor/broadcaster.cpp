@@ -21,8 +21,8 @@ std::string message(const char* kind, const std::string& data)
 
 }  // namespace
 
-Broadcaster::Broadcaster(const Names& names, Exchange& exchange)
-    : names_(names), exchange_(exchange), metrics_(names), events_(std::make_shared<const std::string>("[]")), thread_([this] { run(); })
+Broadcaster::Broadcaster(const Names& names, Exchange& exchange, ViewerServer& viewers)
+    : names_(names), exchange_(exchange), viewers_(viewers), metrics_(names), events_(std::make_shared<const std::string>("[]")), thread_([this] { run(); })
 {
 }
 
@@ -63,6 +63,7 @@ void Broadcaster::handle(const Tick& tick)
         state_ = std::move(text);
     }
     feed_.publish(std::move(stream));
+    viewers_.publish(tick);
     tick_ns_ = runtime::SystemClock{}.steady_ns();
 }
 

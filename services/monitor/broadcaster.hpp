@@ -5,6 +5,7 @@
 #include "history.hpp"
 #include "metrics.hpp"
 #include "picture.hpp"
+#include "viewer_server.hpp"
 
 #include <atomic>
 #include <cstdint>
@@ -18,7 +19,7 @@ namespace quorient::monitor {
 /// The thread between the DDS thread and the web's: turns each tick into text once, for all streams.
 class Broadcaster {
 public:
-    Broadcaster(const Names& names, Exchange& exchange);
+    Broadcaster(const Names& names, Exchange& exchange, ViewerServer& viewers);
     ~Broadcaster();
     Broadcaster(const Broadcaster&) = delete;
     Broadcaster& operator=(const Broadcaster&) = delete;
@@ -43,6 +44,7 @@ private:
 
     const Names& names_;
     Exchange& exchange_;
+    ViewerServer& viewers_;
     Feed feed_;
     History history_;
     Metrics metrics_;

@@ -77,6 +77,8 @@ Metrics::Metrics(const Names& names)
       events_(counters("quorient_events_total", "Events of the system")),
       streams_(gauges("quorient_monitor_streams", "Pages that receive the event stream")),
       refused_(counters("quorient_monitor_connections_refused_total", "Connections closed because all threads were busy")),
+      viewers_(gauges("quorient_monitor_viewers", "Viewers connected by WebSocket")),
+      dropped_(counters("quorient_monitor_viewer_messages_dropped_total", "Messages that slow viewers did not take")),
       deferred_(counters("quorient_monitor_ticks_deferred_total", "Ticks that the web side took over late")),
       isolated_(names.lanes.size(), 0)
 {
@@ -167,10 +169,12 @@ void Metrics::update_events(const Tick& tick)
         events_.Add({{"code", std::string{to_string(code_of(event))}}, {"severity", std::string{to_string(severity_of(event))}}}).Increment();
 }
 
-void Metrics::set_server(std::uint64_t streams, std::uint64_t refused)
+void Metrics::set_server(const Server& server)
 {
-    streams_.Add({}).Set(static_cast<double>(streams));
-    raise(refused_, {}, refused);
+    streams_.Add({}).Set(static_cast<double>(server.streams));
+    raise(refused_, {}, server.refused);
+    viewers_.Add({}).Set(static_cast<double>(server.viewers));
+    raise(dropped_, {}, server.dropped);
 }
 
 std::string Metrics::text() const

@@ -26,8 +26,14 @@ public:
     /// In Prometheus's text format.
     std::string text() const;
 
-    /// The web server's own state.
-    void set_server(std::uint64_t streams, std::uint64_t refused);
+    /// The web side's own state.
+    struct Server {
+        std::uint64_t streams = 0;
+        std::uint64_t refused = 0;
+        std::uint64_t viewers = 0;
+        std::uint64_t dropped = 0;
+    };
+    void set_server(const Server& server);
 
 private:
     using Labels = std::map<std::string, std::string>;
@@ -66,6 +72,8 @@ private:
     Counters& events_;
     Gauges& streams_;
     Counters& refused_;
+    Gauges& viewers_;
+    Counters& dropped_;
     Counters& deferred_;
     std::map<std::string, std::uint64_t> totals_;
     std::vector<AxisMask> isolated_;  // by lane

@@ -4,6 +4,7 @@
 #include "pages.hpp"
 
 #include <fmt/format.h>
+#include <strings.h>
 #include <fstream>
 #include <iterator>
 #include <memory>
@@ -40,6 +41,11 @@ void refuse(httplib::Response& response, int status, const std::string& why)
     response.set_content(dumped({{"error", why}}) + "\n", json_type);
 }
 
+bool is_websocket(const httplib::Request& request)
+{
+    return ::strcasecmp(request.get_header_value("Upgrade").c_str(), "websocket") == 0;
+}
+
 bool is_loopback(const std::string& address)
 {
     return address.rfind("127.", 0) == 0;
@@ -52,16 +58,21 @@ Site::Site(const system::System& system, Exchange& exchange, const Limits& limit
       names_(system),
       limits_(limits),
       exchange_(exchange),
-      broadcaster_(names_, exchange),
+      viewers_(names_),
+      broadcaster_(names_, exchange, viewers_),
       dygraph_script_(file_text(std::string{dygraph_folder} + "dygraph.min.js")),
       dygraph_style_(file_text(std::string{dygraph_folder} + "dygraph.min.css")),
       server_(limits)
 {
     server_.set_default_headers(headers());
     server_.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+        if (is_for_us(request) && is_websocket(request)) return begin_viewer(request, response);
         if (is_for_us(request)) return httplib::Server::HandlerResponse::Unhandled;
         refuse(response, 421, "this server answers to its own address only");
         return httplib::Server::HandlerResponse::Handled;
+    });
+    server_.set_next_protocol([this](int socket, std::string request, std::string protocol) {
+        viewers_.take_over(socket, std::move(request), std::move(protocol));
     });
     route_pages();
     route_data();
@@ -89,6 +100,16 @@ bool Site::is_for_us(const httplib::Request& request) const
     return name == settings_.address || name == "localhost" || name == "127.0.0.1";
 }
 
+httplib::Server::HandlerResponse Site::begin_viewer(const httplib::Request& request, httplib::Response& response)
+{
+    const auto protocol = ViewerServer::chosen_protocol(request.get_header_value("Sec-WebSocket-Protocol"));
+    if (!ViewerServer::may_connect(request.get_header_value("Origin"), settings_.address))
+        refuse(response, 403, "pages of other sites may not connect");
+    else if (!protocol) refuse(response, 400, "expected Sec-WebSocket-Protocol: foxglove.websocket.v1 or foxglove.sdk.v1");
+    else WebServer::go_on_with(*protocol);
+    return httplib::Server::HandlerResponse::Handled;
+}
+
 void Site::route_pages()
 {
     for (const auto& page : pages()) {
@@ -113,7 +134,7 @@ void Site::route_data()
         response.set_content("{\"status\":\"ok\"}\n", json_type);
     });
     server_.Get("/metrics", [this](const httplib::Request&, httplib::Response& response) {
-        broadcaster_.metrics().set_server(streams_, server_.refused());
+        broadcaster_.metrics().set_server({streams_, server_.refused(), viewers_.viewers(), viewers_.dropped()});
         response.set_content(broadcaster_.metrics().text(), "text/plain; version=0.0.4");
     });
     server_.Get("/state", [this](const httplib::Request&, httplib::Response& response) {

@@ -2,6 +2,7 @@
 
 #include "broadcaster.hpp"
 #include "quorient/system/system.hpp"
+#include "viewer_server.hpp"
 #include "web_server.hpp"
 
 #include <atomic>
@@ -26,12 +27,14 @@ private:
     void route_data();
     void route_stream();
     void route_orders();
+    httplib::Server::HandlerResponse begin_viewer(const httplib::Request& request, httplib::Response& response);
     bool is_for_us(const httplib::Request& request) const;
 
     system::MonitorProcess settings_;
     Names names_;
     Limits limits_;
     Exchange& exchange_;
+    ViewerServer viewers_;
     Broadcaster broadcaster_;
     std::atomic<std::size_t> streams_{0};
     std::string dygraph_script_;

@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 #include <deque>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -22,6 +23,9 @@ using Clock = std::chrono::steady_clock;
 
 /// The accepting thread is turning a connection away.
 thread_local bool refusing = false;
+
+/// What the connection that this thread serves goes on with.
+thread_local std::optional<std::string> next_protocol;
 
 /// One connection as httplib reads and writes it, within the limits.
 class Connection final : public httplib::Stream {
@@ -45,6 +49,7 @@ public:
 
     ssize_t write(const char* bytes, size_t size) override
     {
+        if (next_protocol) return static_cast<ssize_t>(size);
         size_t sent = 0;
         while (sent < size) {
             if (!is_writable()) return -1;
@@ -59,13 +64,16 @@ public:
     void get_local_ip_and_port(std::string& ip, int& port) const override { name(::getsockname, ip, port); }
     socket_t socket() const override { return socket_; }
 
+    /// All that has been read so far.
+    const std::string& request() const { return request_; }
+
 private:
     bool fill()
     {
-        if (received_ >= limits_.request_bytes || !wait(POLLIN, request_ends_)) return false;
+        if (request_.size() >= limits_.request_bytes || !wait(POLLIN, request_ends_)) return false;
         const auto count = ::recv(socket_, buffer_.data(), buffer_.size(), 0);
         if (count <= 0) return false;
-        received_ += static_cast<size_t>(count);
+        request_.append(buffer_.data(), static_cast<size_t>(count));
         begin_ = 0;
         end_ = static_cast<size_t>(count);
         return true;
@@ -102,7 +110,7 @@ private:
     std::array<char, 4096> buffer_{};
     size_t begin_ = 0;
     size_t end_ = 0;
-    size_t received_ = 0;
+    std::string request_;
 };
 
 /// A thread per connection, and never more connections than threads: what comes on top is turned away by the accepting thread.
@@ -189,6 +197,11 @@ int WebServer::open(const std::string& address, int port)
     return bound;
 }
 
+void WebServer::go_on_with(std::string protocol)
+{
+    next_protocol = std::move(protocol);
+}
+
 bool WebServer::process_and_close_socket(socket_t socket)
 {
     bool handled = false;
@@ -196,7 +209,12 @@ bool WebServer::process_and_close_socket(socket_t socket)
         ::setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &limits_.send_buffer_bytes, sizeof limits_.send_buffer_bytes);
         Connection connection{socket, limits_, ending_};
         bool closed = false;
+        next_protocol.reset();
         handled = process_request(connection, true, closed, nullptr);
+        if (next_protocol) {
+            next_protocol_(socket, connection.request(), *std::exchange(next_protocol, std::nullopt));
+            return handled;
+        }
         ::shutdown(socket, SHUT_RDWR);
     }
     ::close(socket);

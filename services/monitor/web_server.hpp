@@ -6,7 +6,9 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
+#include <utility>
 
 namespace quorient::monitor {
 
@@ -33,12 +35,20 @@ public:
 
     std::uint64_t refused() const { return refused_; }
 
+    /// Takes over the socket of a connection that goes on with another protocol, with the bytes of its request.
+    using NextProtocol = std::function<void(int socket, std::string request, std::string protocol)>;
+    void set_next_protocol(NextProtocol next) { next_protocol_ = std::move(next); }
+
+    /// Called by a handler: no response is sent to this request, and its connection goes on with that protocol.
+    static void go_on_with(std::string protocol);
+
 private:
     bool process_and_close_socket(socket_t socket) override;
 
     Limits limits_;
     std::atomic<std::uint64_t> refused_{0};
     std::atomic<bool> ending_{false};
+    NextProtocol next_protocol_;
 };
 
 }  // namespace quorient::monitor
