@@ -72,6 +72,15 @@ class LiveVerbs(ProcessTest):
             set(services), {"sensor", "voter-1", "voter-2"} | {f"{role}-{lane}" for role in ("fdi", "attitude") for lane in "abc"}
         )
 
+    def test_status_that_is_watched_goes_on_until_it_is_interrupted(self):
+        watching = self.start("quorient", "status", "--domain", self.domain, "--json", "--watch", "--seconds", 0.5)
+        seen = [json.loads(watching.stdout.readline()) for _ in range(6)]
+        self.assertIn("attitude", seen[-1]["standing"]["text"])
+        self.assertEqual(len(seen[-1]["services"]), 9)
+        watching.send_signal(signal.SIGINT)
+        watching.communicate(timeout=10)
+        self.assertEqual(watching.returncode, 0)
+
     def test_sigterm_ends_everything_in_order_within_two_seconds(self):
         self.pipeline.send_signal(signal.SIGTERM)
         self.pipeline.wait(timeout=5)

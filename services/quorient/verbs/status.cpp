@@ -13,6 +13,7 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <unistd.h>
 #include <algorithm>
 #include <map>
 #include <memory>
@@ -29,6 +30,7 @@ struct StatusOptions {
     BusOptions bus;
     double seconds = 2;
     std::size_t events = 20;
+    bool watch = false;
     bool json = false;
 };
 
@@ -36,6 +38,7 @@ struct StatusOptions {
 struct Heard {
     ServiceStatus first;
     ServiceStatus latest;
+    std::int64_t heard_ns = 0;  ///< steady
 
     double rate_hz() const
     {
@@ -98,28 +101,56 @@ void print_events(std::vector<HealthEvent> events, std::size_t most)
     }
 }
 
-/// What is received of one unit.
+/// What is received of one unit. Watched for long, it forgets who has fallen silent.
 struct Received {
+    static constexpr std::int64_t silence_ns = 2'000'000'000;
+    static constexpr std::size_t most_events = 2000;
+
     Services services;
     std::vector<HealthEvent> events;
     report::Standing standing;
 
     void subscribe(bus::Bus& bus, runtime::EventLoop& loop, std::uint32_t unit)
     {
+        const auto now = [&loop] { return loop.clock().steady_ns(); };
         const auto take = [&loop, &bus, unit](const auto& topic, auto use) {
             using Message = typename std::decay_t<decltype(topic)>::Message;
             loop.on(bus.subscribe(topic), [unit, use](const Message& sample) {
                 if (sample.unit == unit) use(sample);
             });
         };
-        take(bus::topics::status, [this](const ServiceStatus& sample) {
-            services.try_emplace(sample.service, Heard{sample, sample}).first->second.latest = sample;
+        take(bus::topics::status, [this, now](const ServiceStatus& sample) {
+            auto& its = services.try_emplace(sample.service, Heard{sample, sample}).first->second;
+            its.latest = sample;
+            its.heard_ns = now();
         });
-        take(bus::topics::event, [this](const HealthEvent& event) { events.push_back(event); });
+        take(bus::topics::event, [this](const HealthEvent& event) {
+            if (events.size() == most_events) events.erase(events.begin());
+            events.push_back(event);
+        });
         take(bus::topics::cluster, [this](const ClusterDescription& sample) { standing.description = sample; });
-        take(bus::topics::voted, [this](const VotedAttitude& sample) { standing.voted = sample; });
-        take(bus::topics::verdict, [this](const FaultVerdict& sample) { standing.verdicts[sample.detector] = sample; });
+        take(bus::topics::voted, [this, now](const VotedAttitude& sample) {
+            standing.voted = sample;
+            voted_ns = now();
+        });
+        take(bus::topics::verdict, [this, now](const FaultVerdict& sample) {
+            standing.verdicts[sample.detector] = sample;
+            verdict_ns[sample.detector] = now();
+        });
     }
+
+    /// Rates are those since the call before.
+    void begin_next(std::int64_t now_ns)
+    {
+        const auto is_silent = [now_ns](std::int64_t heard_ns) { return now_ns - heard_ns > silence_ns; };
+        std::erase_if(services, [&](const auto& entry) { return is_silent(entry.second.heard_ns); });
+        for (auto& [id, heard] : services) heard.first = heard.latest;
+        if (standing.voted && is_silent(voted_ns)) standing.voted.reset();
+        std::erase_if(standing.verdicts, [&](const auto& entry) { return is_silent(verdict_ns[entry.first]); });
+    }
+
+    std::int64_t voted_ns = 0;
+    std::map<std::uint32_t, std::int64_t> verdict_ns;
 };
 
 void print(const Received& received, const StatusOptions& options, std::int64_t now_ns)
@@ -144,11 +175,22 @@ int status(const StatusOptions& options)
     runtime::EventLoop loop{*bus, clock, runtime::termination_requested()};
     Received received;
     received.subscribe(*bus, loop, options.bus.unit);
-    loop.timer([&] { loop.quit(0); }).set(clock.steady_ns() + static_cast<std::int64_t>(options.seconds * 1e9));
+    const auto show = [&] {
+        name_services(received.services, received.standing);
+        find_level_since(received.events, options.bus.unit, received.standing);
+        if (options.watch && ::isatty(STDOUT_FILENO) == 1) fmt::print("\033[H\033[J");
+        print(received, options, clock.wall_ns());
+        std::fflush(stdout);
+    };
+    const auto period_ns = static_cast<std::int64_t>(options.seconds * 1e9);
+    if (options.watch)
+        loop.every(period_ns, [&] {
+            show();
+            received.begin_next(clock.steady_ns());
+        });
+    else loop.timer([&] { loop.quit(0); }).set(clock.steady_ns() + period_ns);
     loop.run();
-    name_services(received.services, received.standing);
-    find_level_since(received.events, options.bus.unit, received.standing);
-    print(received, options, clock.wall_ns());
+    if (!options.watch) show();
     if (received.services.empty())
         fmt::print(stderr, "no service of unit {} answers in domain {} on '{}'\n", options.bus.unit, options.bus.domain,
                    options.bus.interface);
@@ -162,9 +204,10 @@ void add_status(Program& program)
     auto verb = program.verb("status", "Whether the attitude is good, and why; who is alive, on which transport, at which rate and latency; the latest events");
     auto options = std::make_shared<StatusOptions>();
     options->bus.add_to(verb);
-    verb.option("--seconds", options->seconds, "How long to listen").within(settings::above_zero).value_name("S").shows_default();
+    verb.option("--seconds", options->seconds, "How long to listen; with --watch, how often to show").within(settings::above_zero).value_name("S").shows_default();
     verb.option("--events", options->events, "How many events to show").shows_default();
-    verb.flag("--json", options->json, "One JSON object");
+    verb.flag("--watch", options->watch, "Go on until interrupted, and show it anew every --seconds");
+    verb.flag("--json", options->json, "One JSON object; with --watch one per line each time");
     verb.footer("Example:\n  quorient status --domain 42");
     verb.not_as_asked_if("no service answers");
     verb.run([options] {
