@@ -1,4 +1,5 @@
-"""What the monitor costs: its processor time, and the pipeline's latency with and without it, in turns. A page is open all the time.
+"""What the monitor costs: its processor time, and the pipeline's latency with and without it, in turns. A page is open all the time, and a
+viewer by Foxglove's protocol that subscribes everything. A ratio is that of two runs beside each other; of the rounds the median counts.
 
     QUORIENT_BIN=build/release/bin python3 -m integration_tests.latency.monitor_cost --rounds 5 --seconds 10
 """
@@ -8,6 +9,7 @@ import statistics
 import sys
 import threading
 
+from integration_tests.harness.websocket import WebSocket
 from integration_tests.latency import run, table
 
 CASES = ({"transport": "UDP, Cyclone DDS", "rate_hz": 200}, {"transport": "UDP, Cyclone DDS", "rate_hz": 1000},
@@ -33,18 +35,39 @@ class Reader(threading.Thread):
                 threading.Event().wait(0.05)
 
 
+class Viewer(threading.Thread):
+    """A viewer of all channels, as Reader."""
+
+    def __init__(self, port):
+        super().__init__(daemon=True)
+        self.port, self.bytes, self.ended = port, 0, False
+
+    def run(self):
+        while not self.ended:
+            try:
+                viewer = WebSocket(self.port, "foxglove.sdk.v1")
+                viewer.send_json({"op": "subscribe", "subscriptions": [{"id": channel, "channelId": channel} for channel in range(6)]})
+                while frame := viewer.receive():
+                    self.bytes += len(frame[1])
+                viewer.close()
+            except (OSError, IndexError):
+                threading.Event().wait(0.05)
+
+
 def measure(runner, case, seconds, port, monitored):
     domain = runner.domain = runner.next_domain(1)
     file = run.system_file(runner.directory, case, domain, 1, seconds)
     commands = run.our_commands(file, case)
     if monitored:
         commands = {"monitor": [run.BIN / "quorient-monitor", file, "--set", f"monitor.port={port}"], **commands}
-    reader = Reader(port)
+    clients = (Reader(port), Viewer(port))
     if monitored:
-        reader.start()
+        for client in clients:
+            client.start()
     report = runner.run(commands, domain, case, seconds)
-    reader.ended = True
-    return report, reader.bytes
+    for client in clients:
+        client.ended = True
+    return report, [client.bytes for client in clients]
 
 
 def main():
@@ -56,8 +79,8 @@ def main():
     options = parser.parse_args()
     options.limit = 60
     runner = run.Runner(options)
-    print("| rate | axes | p50 without, with | p99 without, with | lost without, with | monitor: processor | memory | stream |")
-    print("|---|---|---|---|---|---|---|---|")
+    print("| rate | axes | p50 without, with | ratio | p99 without, with | ratio | lost without, with | monitor: processor | memory | page's stream | viewer's |")
+    print("|---|---|---|---|---|---|---|---|---|---|---|")
     for case in CASES:
         found = {False: [], True: []}
         usage, streamed = [], []
@@ -67,11 +90,14 @@ def main():
                 found[monitored].append((report["hops"]["sensor_to_voted"]["p50"], report["hops"]["sensor_to_voted"]["p99"], table.lost(report)))
                 if monitored and "monitor" in report["processes"]:
                     usage.append(report["processes"]["monitor"])
-                    streamed.append(size / options.seconds)
+                    streamed.append([its / options.seconds / 1000 for its in size])
         middle = lambda monitored, place: statistics.median(values[place] for values in found[monitored])  # noqa: E731
-        print(f"| {case['rate_hz']} Hz | {case.get('axes', 4)} | {middle(False, 0):.0f}, {middle(True, 0):.0f} us | {middle(False, 1):.0f}, {middle(True, 1):.0f} us | "
+        ratio = lambda place: statistics.median(there[place] / without[place] for without, there in zip(found[False], found[True]))  # noqa: E731
+        page, viewer = (statistics.median(sizes) for sizes in zip(*streamed))
+        print(f"| {case['rate_hz']} Hz | {case.get('axes', 4)} | {middle(False, 0):.0f}, {middle(True, 0):.0f} us | {ratio(0):.2f} | "
+              f"{middle(False, 1):.0f}, {middle(True, 1):.0f} us | {ratio(1):.2f} | "
               f"{sum(v[2] for v in found[False])}, {sum(v[2] for v in found[True])} | {statistics.median(u['cpu_percent'] for u in usage):.1f} % of a core | "
-              f"{max(u['rss_mib'] for u in usage):.0f} MiB | {statistics.median(streamed) / 1000:.0f} kB/s |", flush=True)
+              f"{max(u['rss_mib'] for u in usage):.0f} MiB | {page:.0f} kB/s | {viewer:.0f} kB/s |", flush=True)
     return 0
 
 
