@@ -3,7 +3,12 @@
 const page = (id) => document.getElementById(id);
 const pixelsPerDegree = 3;
 
-export const number = (value, digits = 3) => (value === null || value === undefined ? "–" : value.toPrecision(digits));
+export function number(value, digits = 3) {
+  if (value === null || value === undefined) return "–";
+  const size = Math.abs(value);
+  if (size === 0) return "0";
+  return size < 1e-3 || size >= 1e6 ? value.toExponential(digits - 1) : value.toPrecision(digits);
+}
 
 const degrees = (value) => (value === undefined || value === null ? "–" : `${value.toFixed(2)}°`);
 

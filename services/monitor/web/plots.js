@@ -43,20 +43,20 @@ function options(labels, colours, dashed, ylabel, legend) {
   return {
     labels, colors: colours, series, ylabel, customBars: true, legend: "always", labelsDiv: page(legend),
     axisLineColor: colour("--faint"), gridLineColor: colour("--line"), rangeSelectorAlpha: 0.3, logscale: page("logarithmic").checked,
-    axes: { y: { valueFormatter: (value) => value.toExponential(2), axisLabelFormatter: (value) => value.toExponential(0), axisLabelWidth: 62 } },
+    axes: { x: { axisLabelWidth: 70 }, y: { valueFormatter: (value) => value.toExponential(2), axisLabelFormatter: (value) => value.toExponential(0), axisLabelWidth: 62 } },
     zoomCallback: () => onTouch(), animatedZooms: false,
   };
 }
 
-function build(all, lanes, axis, axisName) {
+function build(all, lanes, axis, state) {
   residual?.destroy();
   error?.destroy();
   const labels = ["time", ...lanes.flatMap((name) => [`lane ${name}`, `bound ${name}`])];
   const colours = lanes.flatMap((_, place) => [laneColour(place), laneColour(place)]);
   const bounds = lanes.map((name) => `bound ${name}`);
-  residual = new Dygraph(page("plot"), residualRows(all, lanes, axis), { ...options(labels, colours, bounds, "per frame", "plot-legend"), showRangeSelector: true });
+  residual = new Dygraph(page("plot"), residualRows(all, lanes, axis), { ...options(labels, colours, bounds, `${state.kind === "accelerometer" ? "m/s" : "rad"} per frame`, "plot-legend"), showRangeSelector: true });
   error = new Dygraph(page("error-plot"), errorRows(all), options(["time", "standard deviation", "error"], [colour("--bound"), laneColour(1)], ["standard deviation"], "rad", "error-legend"));
-  page("plot-title").textContent = `Residual of ${axisName}`;
+  page("plot-title").textContent = `Residual of ${state.axes[axis].name}`;
 }
 
 /// @param touched  called when somebody zooms, so that the plot does not run away from them.
@@ -73,7 +73,7 @@ export function drawPlots(samples, state, axis, anew = false) {
   const all = samples.all();
   if (!all.length) return;
   const wanted = [axis, state.axes[axis].name, ...lanes].join();
-  if (wanted !== built) build(all, lanes, axis, state.axes[axis].name);
+  if (wanted !== built) build(all, lanes, axis, state);
   built = wanted;
   const end = all.at(-1).t;
   const dateWindow = [end - 1000 * Number(page("span").value), end];
