@@ -1,15 +1,23 @@
 """The demos as a user starts them, and their twins without the fault."""
 import unittest
+import xml.etree.ElementTree
 
-from integration_tests.harness.processes import CONFIGURATIONS, DATA, ProcessTest
+from integration_tests.harness.processes import CONFIGURATIONS, DATA, ROOT, ProcessTest
 
 RECORDING = DATA / "mimu4444_carlsson/exp_1/data.bin"
 
 
+def words_of(picture, kind):
+    """The texts of one class of a picture: t its titles, o what stands in its bars."""
+    return [text.text for text in xml.etree.ElementTree.parse(picture).iter("{http://www.w3.org/2000/svg}text") if text.get("class") == kind]
+
+
 class DefaultDemo(ProcessTest):
     def test_isolates_axis_1_in_every_lane_and_keeps_the_attitude(self):
-        code, summary, stderr = self.launch(CONFIGURATIONS / "demo.yaml")
+        picture = self.run_directory / "run.svg"
+        code, summary, stderr = self.launch(CONFIGURATIONS / "demo.yaml", "--plot", picture)
         self.assertEqual(code, 0, f"{summary}\n{stderr}")
+        self.check_picture(picture)
         self.assertEqual(summary["fault"]["axes"], [1])
         for name, lane in summary["lanes"].items():
             self.assertEqual(lane["isolated"], [1], name)
@@ -22,6 +30,13 @@ class DefaultDemo(ProcessTest):
         self.assertLess(summary["voted"]["attitude"]["final_error_rad"], 3e-6)
         # The fault is really there: without roll-back each frame up to its isolation leaves 6.9e-5 rad, and there is at least one.
         self.assertGreater(summary["without_rollback"]["final_error_rad"], 6e-5)
+
+    def check_picture(self, picture):
+        """As the README shows it: the same diagrams, and one lane's bar for each isolation."""
+        self.assertEqual(words_of(picture, "t"), words_of(ROOT / "docs/run.svg", "t"))
+        for drawn in (picture, ROOT / "docs/run.svg"):
+            self.assertEqual(words_of(drawn, "o").count("isolated"), 3)
+            self.assertLess(drawn.stat().st_size, 60_000)
 
     def test_isolates_nothing_without_the_fault(self):
         code, summary, stderr = self.launch(

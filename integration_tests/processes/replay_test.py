@@ -64,6 +64,21 @@ class SimulatedLog(ProcessTest):
         self.assertEqual(report["false_isolations"], [])
         self.assertLess(report["attitude"]["final_error_rad"], 3e-6)
 
+    def test_draws_the_same_picture_on_every_run_and_overwrites_none_unasked(self):
+        log, picture = self.simulate(), self.run_directory / "run.svg"
+        fault = ("--fault", "axis=2,kind=bias,value=0.02,start=4")
+        self.replay(log, *fault, "--plot", picture)
+        drawn = picture.read_text()
+        for text in ("Attitude error against the truth", "G3, lane a", "G3, lane b", "residual of G3", ">isolated<", ">FULL<"):
+            self.assertIn(text, drawn)
+        refused = self.run_program("quorient", "replay", log, "--system", CONFIGURATIONS / "demo.yaml", "--plot", picture)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("exists already", refused.stderr)
+        self.replay(log, *fault, "--plot", picture, "--force")
+        self.assertEqual(picture.read_text(), drawn)
+        self.replay(log, "--plot", picture, "--force")
+        self.assertIn("Axes left out: none", picture.read_text())
+
     def test_blames_nobody_without_a_fault(self):
         report = json.loads(self.replay(self.simulate()))
         self.assertEqual(report["faults"], [])

@@ -165,10 +165,10 @@ public:
         processes_.start();
         auto& end = loop_.timer([this] { loop_.quit(0); });
         loop_.every(second_ns / 20, [this, &end] { look_at_processes(end); });
-        loop_.every(second_ns / 5, [this] { screen_.draw(processes_); });
+        loop_.every(second_ns / 5, [this] { screen_.draw(processes_, clock_.wall_ns()); });
         if (options_.duration_s) end.set(clock_.steady_ns() + static_cast<std::int64_t>(*options_.duration_s * second_ns));
         loop_.run();
-        screen_.draw(processes_);
+        screen_.draw(processes_, clock_.wall_ns());
         processes_.stop();
         return conclude();
     }
