@@ -109,7 +109,7 @@ public:
     /// Whom this bus refused since the last call: by DDS Security, or for another wire contract. Each text comes once.
     virtual std::vector<Refusal> refusals() { return {}; }
 
-private:
+    // Endpoints without their type: for advertise(), subscribe(), and a bus that is made of another one.
     virtual std::unique_ptr<Writer> make_writer(const TopicSpec& topic, const WriterOptions& options) = 0;
     virtual std::unique_ptr<Reader> make_reader(const TopicSpec& topic) = 0;
 };
