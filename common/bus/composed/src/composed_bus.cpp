@@ -171,7 +171,7 @@ public:
 
     Vendor vendor() const override { return outside_->vendor(); }
     bool shared_memory_lost() const override { return outside_->shared_memory_lost(); }
-    std::vector<std::string> refusals() override { return outside_->refusals(); }
+    std::vector<Refusal> refusals() override { return outside_->refusals(); }
 
 private:
     std::unique_ptr<Writer> make_writer(const TopicSpec& topic, const WriterOptions& options) override
