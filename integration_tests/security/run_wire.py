@@ -43,7 +43,7 @@ def look(level):
     """Captures while the demo starts and runs, then replays."""
     with Pipeline("source.duration_s=600", "source.faults=[]", level=level, rate_hz=RATE_HZ) as pipeline:
         sniffer = Sniffer(ports_of(pipeline.domain))
-        listeners = {vendor: Listener(vendor, pipeline.domain, pipeline.keys, pipeline.environment) for vendor in VENDORS}
+        listeners = {vendor: Listener(vendor, pipeline) for vendor in VENDORS}
         try:
             pipeline.until(lambda: all(listener.receives() for listener in listeners.values()), "a monitor on each vendor receives both voters")
             pipeline.until_running()

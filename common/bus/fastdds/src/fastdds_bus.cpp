@@ -271,7 +271,7 @@ public:
     {
         auto all = peers_->refusals();
         if (!settings_.security) return all;
-        for (auto& refusal : fastdds::library_refusals().take()) all.push_back(std::move(refusal));
+        for (const auto& entry : fastdds::library_refusals().take()) all.push_back({entry.reason, peers_->in_words(entry.text)});
         return all;
     }
 

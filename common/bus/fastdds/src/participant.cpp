@@ -13,6 +13,9 @@
 #include <unistd.h>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
+#include <fastdds/dds/log/StdoutErrConsumer.hpp>
+#include <memory>
+#include <mutex>
 
 namespace quorient::bus::fastdds {
 
@@ -78,6 +81,17 @@ void add_transports(const Settings& settings, Listening listening, dds::Transpor
     if (shares_memory(settings)) transports.user_transports.push_back(std::make_shared<rtps::SharedMemTransportDescriptor>());
 }
 
+/// Standard output is for what a program prints. By default the library's log would go there as well.
+void log_to_stderr()
+{
+    static std::once_flag once;
+    std::call_once(once, [] {
+        dds::Log::ClearConsumers();
+        dds::Log::RegisterConsumer(std::make_unique<dds::StdoutErrConsumer>());
+        dds::Log::SetVerbosity(dds::Log::Error);
+    });
+}
+
 }  // namespace
 
 eprosima::fastrtps::Duration_t seconds(double s)
@@ -104,7 +118,7 @@ tl::expected<Settings, std::string> with_room_in_shared_memory(Settings settings
 
 dds::DomainParticipant* join(const Settings& settings, Peers& peers)
 {
-    dds::Log::SetVerbosity(dds::Log::Error);
+    log_to_stderr();
     dds::DomainParticipantQos qos;
     qos.name(settings.participant);
     const auto announcement = contract_announcement();

@@ -1,6 +1,7 @@
 #include "peers.hpp"
 
 #include "quorient/bus/contract.hpp"
+#include "refused_endpoint.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -52,6 +53,15 @@ bool Peers::refuses(const GuidPrefix& guid) const
     if (!refuses_any_) return false;
     const std::lock_guard lock{mutex_};
     return of_other_contract_.contains(guid);
+}
+
+std::string Peers::in_words(const std::string& entry) const
+{
+    const auto refused = refused_endpoint(entry);
+    if (!refused) return "Fast DDS: " + entry;
+    const auto member = sender(refused->participant);
+    return fmt::format("refuses '{}': it may not {} {}", member.name.empty() ? member.guid : member.name,
+                       refused->publishes ? "publish" : "subscribe to", refused->topic);
 }
 
 Sender Peers::sender(const GuidPrefix& guid) const

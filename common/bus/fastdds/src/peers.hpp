@@ -23,6 +23,9 @@ public:
     bool refuses(const GuidPrefix& guid) const;
     std::vector<Refusal> refusals() { return refusals_.take(); }
 
+    /// What an entry of the library's log about a refusal means, with the participant's name where the entry has its GUID.
+    std::string in_words(const std::string& entry) const;
+
 private:
     void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant*,
                                   eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;

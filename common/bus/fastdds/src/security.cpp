@@ -1,5 +1,7 @@
 #include "security.hpp"
 
+#include "refused_endpoint.hpp"
+
 #include <fastdds/dds/log/Log.hpp>
 #include <memory>
 #include <string>
@@ -18,7 +20,8 @@ public:
     void Consume(const dds::Log::Entry& entry) override
     {
         const std::string_view category = entry.context.category ? entry.context.category : "";
-        if (entry.kind == dds::Log::Kind::Error && category.starts_with("SECURITY")) refusals_.add(RefusalReason::security, "Fast DDS: " + entry.message);
+        if (entry.kind != dds::Log::Kind::Error || !category.starts_with("SECURITY") || announces_refused_endpoint(entry.message)) return;
+        refusals_.add(RefusalReason::security, entry.message);
     }
 
 private:
