@@ -9,6 +9,7 @@ import unittest
 from integration_tests.harness.processes import CONFIGURATIONS, ProcessTest
 
 DEMO = CONFIGURATIONS / "demo.yaml"
+IDENTITY_EXPIRES = 60  # event code
 
 
 class WithKeys(ProcessTest):
@@ -133,6 +134,28 @@ class SecuredDemo(WithKeys):
         self.assertEqual({lane["vendor"] for lane in summary["lanes"].values()}, {"fastdds", "cyclonedds"})
         self.assertEqual(summary["voted"]["missing"], 0)
         self.assertLess(summary["voted"]["attitude"]["final_error_rad"], 3e-6)
+
+
+class Expiry(WithKeys):
+    def test_is_reported_thirty_days_before_by_the_process_concerned_alone(self):
+        self.make_keys()
+        for name, days in (("voter-2", 29), ("attitude-b", 29), ("fdi-a", 31)):
+            self.assertEqual(self.keys_verb("--renew", name, "--days", days).returncode, 0)
+        pipeline = self.start("quorient", "launch", DEMO, "--domain", self.domain, "--json", "--set", "source.duration_s=60", "--set", "source.faults=[]",
+                              "--set", "expect=null", *self.secured())
+        self.eventually(lambda: self.run_program("quorient", "health", "voter-1").returncode == 0, "the pipeline runs", 30)
+        reported = lambda: {(event["source_name"], event["text"]) for event in self.events() if event["code"] == IDENTITY_EXPIRES}  # noqa: E731
+        self.eventually(lambda: len(reported()) >= 2, "both certificates are reported", 30)
+        self.assertEqual({name for name, _ in reported()}, {"voter-2", "attitude-b"})
+        for name, text in reported():
+            self.assertIn(f"expires in 28 days: quorient keys --renew {name}", text)
+        pipeline.send_signal(signal.SIGTERM)
+        pipeline.wait(timeout=10)
+
+    def events(self):
+        """The events so far: each service offers its last ones to a late reader."""
+        lines = self.run_program("quorient", "echo", "event", "--json", "--count", 1000, "--timeout", 3, "--domain", self.domain, "--keys", self.keys).stdout
+        return [json.loads(line) for line in lines.splitlines()]
 
 
 class Orders(ProcessTest):

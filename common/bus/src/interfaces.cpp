@@ -79,4 +79,10 @@ bool is_ipv4_address(const std::string& text)
     return inet_pton(AF_INET, text.c_str(), &address) == 1;
 }
 
+bool is_loopback(std::string_view interface)
+{
+    const auto addresses = addresses_of(interface);
+    return !addresses.empty() && std::ranges::all_of(addresses, [](const std::string& address) { return address.starts_with("127."); });
+}
+
 }  // namespace quorient::bus

@@ -24,12 +24,6 @@ constexpr double loopback_ratio = 8;
 constexpr double shortest_loopback_s = 0.02;  // above 200 Hz the answers of nine processes would fill two cores
 constexpr double longest_loopback_s = 0.1;    // a sample lost to a full buffer, at the end of a stream
 
-bool is_loopback(std::string_view interface)
-{
-    const auto addresses = addresses_of(interface);
-    return !addresses.empty() && std::ranges::all_of(addresses, [](const std::string& address) { return address.starts_with("127."); });
-}
-
 constexpr double highest_domain = 230;  // above it the RTPS ports leave the range of UDP [RTPS 9.6.1.1]
 
 constexpr std::array<settings::Setting<Settings>, 2> record{{

@@ -2,6 +2,7 @@
 
 #include "contract_check.hpp"
 #include "quorient/bus/contract.hpp"
+#include "quorient/bus/history.hpp"
 #include "quorient/bus/iceoryx_guard.hpp"
 #include "quorient/bus/roudi.hpp"
 #include "quorient/messages/meaning.hpp"
@@ -238,9 +239,8 @@ private:
 class CycloneBus final : public Bus {
 public:
     CycloneBus(Entity domain, Entity participant, const Settings& settings, bool shared, OwnSamples own)
-        : asked_(settings.transport),
+        : settings_(settings),
           own_(own),
-          secured_(settings.security.has_value()),
           roudi_life_(shared ? roudi_life() : 0),
           domain_(std::move(domain)),
           participant_(std::move(participant)),
@@ -259,7 +259,7 @@ public:
     std::vector<Refusal> refusals() override
     {
         auto all = refusals_.take();
-        if (!secured_) return all;
+        if (!settings_.security) return all;
         for (auto& refusal : cyclonedds::library_refusals().take()) all.push_back(std::move(refusal));
         return all;
     }
@@ -269,8 +269,9 @@ public:
 private:
     std::unique_ptr<Writer> make_writer(const TopicSpec& topic, const WriterOptions& options) override
     {
-        const auto asked = asked_for(topic, asked_);
+        const auto asked = asked_for(topic, settings_.transport);
         const auto qos = to_qos(topic.qos, &options, asked);
+        if (topic.qos.exclusive) dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kept_samples(topic.qos, options, settings_));
         auto writer = checked(dds_create_writer(participant_.handle(), topic_of(topic), qos.get(), nullptr), topic.name);
         if (dds_is_loan_available(writer.handle())) check_room(writer.handle(), topic);
         if (skips_own(own_, topic)) skipped_.push_back(instance_of(writer));
@@ -279,7 +280,7 @@ private:
 
     std::unique_ptr<Reader> make_reader(const TopicSpec& topic) override
     {
-        const auto asked = asked_for(topic, asked_);
+        const auto asked = asked_for(topic, settings_.transport);
         const auto qos = to_qos(topic.qos, nullptr, asked);
         const bool skips = skips_own(own_, topic);
         // By iceoryx own samples still arrive, so the reader looks at each sample's writer, too.
@@ -288,7 +289,7 @@ private:
         const auto condition = dds_create_readcondition(reader.handle(), DDS_ANY_STATE);
         if (condition < 0 || dds_waitset_attach(waitset_.handle(), condition, 0) < 0)
             throw Error(fmt::format("Cyclone DDS: {}: cannot wait for data", topic.name));
-        return std::make_unique<CycloneReader>(std::move(reader), topic.type, asked, secured_, skips ? &skipped_ : nullptr, refusals_);
+        return std::make_unique<CycloneReader>(std::move(reader), topic.type, asked, settings_.security.has_value(), skips ? &skipped_ : nullptr, refusals_);
     }
 
     static dds_instance_handle_t instance_of(const Entity& entity)
@@ -307,10 +308,9 @@ private:
         return topics_.emplace(spec.name, topic).first->second;
     }
 
-    Transport asked_;
+    Settings settings_;
     OwnSamples own_;
     std::vector<dds_instance_handle_t> skipped_;  ///< own writers whose samples come another way
-    bool secured_;
     std::uint64_t roudi_life_;
     Entity domain_;  // outlives the participant, which takes everything it made with it
     Entity participant_;

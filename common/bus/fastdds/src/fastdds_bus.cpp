@@ -1,5 +1,6 @@
 #include "quorient/bus/fastdds_bus.hpp"
 
+#include "quorient/bus/history.hpp"
 #include "quorient/messages/meaning.hpp"
 
 #include "participant.hpp"
@@ -293,6 +294,7 @@ private:
     {
         dds::DataWriterQos qos = publisher_->get_default_datawriter_qos();
         apply(topic.qos, settings_, qos);
+        qos.history().depth = kept_samples(topic.qos, options, settings_);
         qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
         // The default heartbeat of 3 s leaves a Cyclone reader that matched late without its history.
         qos.reliable_writer_qos().times.heartbeatPeriod = seconds(heartbeat_s(settings_));

@@ -10,6 +10,9 @@ namespace quorient::bus {
 /// (containers know their subnets, not their interfaces' names). Empty where there is none.
 std::vector<std::string> addresses_of(std::string_view which);
 
+/// Whether the interface, as addresses_of() takes it, is this host's loopback.
+bool is_loopback(std::string_view interface);
+
 /// This host's IPv4 addresses except loopback, in ascending order. The kernel's order differs from start to start if two networks come up
 /// together, as in a container.
 std::vector<std::string> own_addresses();
