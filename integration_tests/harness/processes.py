@@ -104,6 +104,10 @@ class ProcessTest(unittest.TestCase):
             self.assertLess(time.monotonic(), deadline, f"not within {timeout} s: {what}")
             time.sleep(0.02)
 
+    def heartbeat(self, name):
+        """The file in which that process of unit 1 leaves its heartbeat."""
+        return self.run_directory / f"{name}.{self.domain}.1.heartbeat"
+
     def write(self, name, text):
         path = self.run_directory / name
         path.write_text(text)

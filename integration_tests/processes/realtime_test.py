@@ -29,7 +29,7 @@ class RealTime(ProcessTest):
         words = [program, system, "--name", "fdi-a", "--domain", str(self.domain), *(word for value in settings for word in ("--set", value))]
         process = subprocess.Popen(words, env=self.environment, preexec_fn=give_up, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.processes.append(process)
-        self.eventually(lambda: (self.run_directory / "fdi-a.heartbeat").exists(), "the detector is up")
+        self.eventually(lambda: self.heartbeat("fdi-a").exists(), "the detector is up")
         process.terminate()
         said, _ = process.communicate(timeout=10)
         self.assertEqual(process.returncode, 0, said)
@@ -64,7 +64,7 @@ class Spinning(ProcessTest):
         """Which comes first in a sensor that waits for its consumers: some processor time, or some waiting."""
         process = self.start("quorient-sensor", CONFIGURATIONS / "demo.yaml", "--domain", self.domain,
                              "--set", "sensor.wait_s=600", "--set", f"sensor.spin={spin}")
-        self.eventually(lambda: (self.run_directory / "sensor.heartbeat").exists(), "the sensor is up")
+        self.eventually(lambda: self.heartbeat("sensor").exists(), "the sensor is up")
         waits, cpu_s = self.waits_and_cpu_s(process)
         reached = {}
 

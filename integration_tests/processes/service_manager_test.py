@@ -59,7 +59,7 @@ class ServiceManager(ProcessTest):
 
     def test_a_detector_that_hears_no_sensor_is_not_ready_and_feeds_nothing(self):
         detector = self.start("quorient-fdi", CONFIGURATIONS / "demo.yaml", "--name", "fdi-a", "--domain", self.domain)
-        self.eventually(lambda: (self.run_directory / "fdi-a.heartbeat").exists(), "the detector is up")
+        self.eventually(lambda: self.heartbeat("fdi-a").exists(), "the detector is up")
         self.assertIsNone(self.hear(3 * self.WATCHDOG_S))
         self.assertIsNone(detector.poll())
 

@@ -98,7 +98,7 @@ class SharedMemory(ProcessTest):
     def frames_of(self, name):
         """None before its first."""
         try:
-            return int((self.run_directory / f"{name}.heartbeat").read_text().split()[1])
+            return int(self.heartbeat(name).read_text().split()[1])
         except (FileNotFoundError, IndexError):
             return None
 
@@ -206,11 +206,11 @@ class SharedMemory(ProcessTest):
         for options, choice, expected in (("ro", "preferred", True), ("size=1m", "preferred", True), ("rw", "required", False)):
             with self.subTest(options=options):
                 process = self.in_other_memory(options, *BY_FASTDDS, "--domain", self.domain, "--set", f"shared_memory={choice}")
-                self.eventually(lambda: (self.run_directory / "fdi-a.heartbeat").exists(), "the detector runs")
+                self.eventually(lambda: self.heartbeat("fdi-a").exists(), "the detector runs")
                 time.sleep(1.2)  # two checks of its endpoints: silence can only be seen by waiting
                 process.terminate()
                 reported = "shm was asked for" in process.communicate(timeout=10)[0]
-                (self.run_directory / "fdi-a.heartbeat").unlink()
+                self.heartbeat("fdi-a").unlink()
                 self.assertEqual(reported, expected)
         for options, reason in (("ro", "cannot open its shared memory"), ("size=1m", "needs 4 MiB in /dev/shm")):
             with self.subTest(options=options):

@@ -1,10 +1,15 @@
+#include "quorient/bus/settings.hpp"
 #include "quorient/runtime/clock.hpp"
 #include "quorient/runtime/heartbeat.hpp"
+#include "quorient/system/numbers.hpp"
 #include "verbs.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace quorient::cli {
 
@@ -12,19 +17,51 @@ namespace {
 
 struct HealthOptions {
     std::string name;
+    std::optional<std::uint32_t> domain;
+    std::optional<std::uint32_t> unit;
     double fresh_s = 1;
 };
 
+std::string described(const runtime::HeartbeatOwner& owner)
+{
+    return fmt::format("{} of '{}', domain {}, unit {}", owner.service, owner.system, owner.domain, owner.unit);
+}
+
+std::string described(const std::vector<runtime::Beat>& beats)
+{
+    std::vector<std::string> all;
+    for (const auto& beat : beats) all.push_back(described(beat.owner));
+    return fmt::format("{}", fmt::join(all, "; "));
+}
+
+/// @throws Exit where there is none, or more than one: an answer for another system's process would be worse than none.
+runtime::Beat only_one(const HealthOptions& options)
+{
+    const auto all = runtime::read_heartbeats();
+    auto asked_for = all;
+    std::erase_if(asked_for, [&](const runtime::Beat& beat) {
+        return beat.owner.service != options.name || (options.domain && beat.owner.domain != *options.domain) ||
+               (options.unit && beat.owner.unit != *options.unit);
+    });
+    if (asked_for.size() > 1) fail(fmt::format("{}: several processes have this name: {}. Choose one by --domain and --unit", options.name, described(asked_for)));
+    if (asked_for.size() == 1) return asked_for.front();
+    const auto asked = fmt::format("{}{}{}", options.name, options.domain ? fmt::format(" in domain {}", *options.domain) : "",
+                                   options.unit ? fmt::format(" of unit {}", *options.unit) : "");
+    fmt::print(stderr, "{}: no heartbeat in {}; {}\n", asked, runtime::run_directory().string(),
+               all.empty() ? "there is none at all (another QUORIENT_RUN_DIR?)" : "there are those of " + described(all));
+    throw Exit{ExitCode::not_as_asked};
+}
+
 int health(const HealthOptions& options)
 {
-    const auto beat = runtime::read_heartbeat(options.name);
-    if (!beat) {
-        fmt::print(stderr, "{}: no heartbeat in {}\n", options.name, runtime::run_directory().string());
-        return 1;
+    const auto beat = only_one(options);
+    if (beat.frames == 0) {
+        fmt::print("{}: has handled no frame yet\n", described(beat.owner));
+        return ExitCode::not_as_asked;
     }
-    const double age_s = static_cast<double>(runtime::SystemClock{}.steady_ns() - beat->steady_ns) * 1e-9;
-    fmt::print("{}: {} frames, the latest {:.3f} s ago\n", options.name, beat->frames, age_s);
-    return age_s <= options.fresh_s ? 0 : 1;
+    const double age_s = static_cast<double>(runtime::SystemClock{}.steady_ns() - beat.steady_ns) * 1e-9;
+    fmt::print("{}: {} frames, the latest {:.3f} s ago\n", described(beat.owner), beat.frames, age_s);
+    return age_s <= options.fresh_s ? ExitCode::done : ExitCode::not_as_asked;
 }
 
 }  // namespace
@@ -34,9 +71,11 @@ void add_health(Program& program)
     auto verb = program.verb("health", "Exit 0 if a service of this host handles frames, without joining DDS");
     auto options = std::make_shared<HealthOptions>();
     verb.option("name", options->name, "The process's name in the system file").required();
+    verb.option("--domain", options->domain, "Its DDS domain, where several systems of this host have such a process").within(bus::bus_record(), "domain");
+    verb.option("--unit", options->unit, "Its unit, likewise").within(system::unit_ids);
     verb.option("--fresh", options->fresh_s, "A heartbeat older than this is stale").within(settings::above_zero).value_name("S").shows_default();
     verb.footer("Example:\n  quorient health fdi-a");
-    verb.not_as_asked_if("there is no heartbeat, or a stale one");
+    verb.not_as_asked_if("there is no heartbeat, a stale one, or no frame yet");
     verb.run([options] {
         if (const int exit_code = health(*options); exit_code != 0) throw Exit{exit_code};
     });
