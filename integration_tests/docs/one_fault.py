@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
 """Runs the default demo and prints what each process sent about the frames around the fault, as a Markdown table.
 
-usage: QUORIENT_BIN=build/release/bin integration_tests/docs/one_fault.py > integration_tests/results/one_fault.md
+usage: QUORIENT_BIN=build/release/bin python3 -m integration_tests.docs.one_fault > integration_tests/results/one_fault.md
 """
-import json
 import os
 import pathlib
 import platform
 import subprocess
 import sys
 import tempfile
+
+from integration_tests.harness import exact_json
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 BIN = pathlib.Path(os.environ.get("QUORIENT_BIN", ROOT / "build/release/bin"))
@@ -42,7 +43,7 @@ def record(folder):
 
 def samples(folder, topic):
     with open(folder / topic) as file:
-        found = [json.loads(line) for line in file if line.startswith("{") and line.endswith("}\n")]
+        found = [exact_json.loads(line) for line in file if line.startswith("{") and line.endswith("}\n")]
     return [sample for sample in found if sample["sequence_number"] in SHOWN]
 
 

@@ -1,6 +1,5 @@
 """Foreign nodes for the tests: builds them from the installed IDL alone, starts them, reads what they print."""
 import functools
-import json
 import math
 import os
 import pathlib
@@ -8,6 +7,7 @@ import signal
 import subprocess
 
 INTEROP = pathlib.Path(__file__).resolve().parent.parent / "interop"
+from integration_tests.harness import exact_json
 from integration_tests.harness.processes import BIN, ProcessTest
 
 BUILD = pathlib.Path(os.environ.get("QUORIENT_BUILD", BIN.parent))
@@ -95,7 +95,7 @@ class InteropTest(ProcessTest):
         result = self.run_program(
             "quorient", "echo", topic, "--count", count, "--json", "--timeout", timeout, "--domain", self.domain, *arguments, timeout=timeout + 20
         )
-        return [json.loads(line) for line in result.stdout.splitlines()]
+        return [exact_json.loads(line) for line in result.stdout.splitlines()]
 
     def all_alive(self, services):
         for name, (process, log) in services.items():

@@ -11,6 +11,7 @@ import sys
 import tempfile
 import time
 
+from integration_tests.harness import exact_json
 from integration_tests.harness.processes import BIN, CONFIGURATIONS
 from integration_tests.harness.streams import Recording, parse_truth, parse_voted
 
@@ -215,7 +216,7 @@ class Pipeline:
         text, self.words_of_launch = self.launch.communicate(timeout=15)
         for recording in (self.merged, self.plain, self.truth):
             recording.stop()
-        return json.loads(text)
+        return exact_json.loads(text)
 
     def log_of(self, name):
         path = self.run_directory / f"{name}.log"

@@ -1,5 +1,4 @@
 """What process tests share: programs, domains, hard time-outs. No sleep is used for synchronisation."""
-import json
 import os
 import pathlib
 import shutil
@@ -8,6 +7,7 @@ import tempfile
 import time
 import unittest
 
+from integration_tests.harness import exact_json
 from integration_tests.harness.witness import until_held
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
@@ -95,7 +95,7 @@ class ProcessTest(unittest.TestCase):
         """quorient launch --json. @returns its exit code and the summary."""
         result = self.run_program("quorient", "launch", configuration, "--domain", self.domain, "--json", *arguments, timeout=timeout)
         self.assertIn(result.returncode, (0, 1), result.stdout + result.stderr)
-        return result.returncode, json.loads(result.stdout), result.stderr
+        return result.returncode, exact_json.loads(result.stdout), result.stderr
 
     def eventually(self, condition, what, timeout=20):
         """Polls until the condition holds; a hard time-out, not a wait."""

@@ -1,12 +1,13 @@
 """Recordings of a running pipeline's topics, made by `quorient echo` in processes of their own."""
 import fcntl
 import gc
-import json
 import math
 import subprocess
 import threading
 import time
 from typing import NamedTuple
+
+from integration_tests.harness import exact_json
 
 # A full garbage collection visits every sample: after some minutes it takes longer than a reader's history lasts, and delivered frames
 # would count as lost. It is not needed, as no object here refers to itself.
@@ -89,4 +90,4 @@ class Recording:
     def _read(self):
         for line in self._process.stdout:
             if line.endswith("\n"):
-                self.samples.append(self._parse(json.loads(line), time.monotonic()))
+                self.samples.append(self._parse(exact_json.loads(line), time.monotonic()))

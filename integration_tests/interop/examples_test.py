@@ -1,5 +1,4 @@
 """The examples of idl/examples, built with the installed IDL alone, see and drive the pipeline."""
-import json
 import os
 import pathlib
 import re
@@ -7,6 +6,7 @@ import signal
 import unittest
 from statistics import mode
 
+from integration_tests.harness import exact_json
 from integration_tests.harness.foreign import BIN, InteropTest, angle, conjugate, example, product
 from integration_tests.harness.processes import CONFIGURATIONS
 
@@ -62,11 +62,11 @@ class Examples(InteropTest):
 
     def record(self, *arguments):
         """A recording of the demo's four gyros. @returns the cluster, the recording, and the true attitude of each sequence."""
-        layout = json.loads(self.run_program("quorient", "layout", "cone-4", "--json").stdout)
+        layout = exact_json.loads(self.run_program("quorient", "layout", "cone-4", "--json").stdout)
         axes = self.write("axes.csv", "".join(",".join(map(repr, axis)) + "\n" for axis in layout["axes"]))
         motion = ("quorient", "simulate", "coning", "--axes", axes, "--interval", 0.005, "--quantum", QUANTUM_RAD, "--quantize", "carry")
         recording = self.write("recording.csv", self.run_program(*motion, *arguments).stdout)
-        start = json.loads(self.run_program(*motion[:7], "--at", 0, "--json").stdout)["attitude"]
+        start = exact_json.loads(self.run_program(*motion[:7], "--at", 0, "--json").stdout)["attitude"]
         rows = [line.split(",") for line in recording.read_text().splitlines() if line[0].isdigit()]
         # The publisher states (1, 0, 0, 0) at the beginning: the reference frame is turned by that much.
         described = self.write("described.csv", "".join(f"{line},0,{QUANTUM_RAD}\n" for line in axes.read_text().splitlines()))
@@ -119,7 +119,7 @@ class Examples(InteropTest):
         self.eventually(lambda: last() == len(truth) - 1, "the last frame is voted")
         pipeline.send_signal(signal.SIGTERM)
         self.assertEqual(pipeline.wait(20), 0, said.read_text())
-        summary = json.loads(said.read_text())
+        summary = exact_json.loads(said.read_text())
         self.assertEqual({name: lane["isolated"] for name, lane in summary["lanes"].items()}, {"a": [1], "b": [1], "c": [1]})
 
     def test_a_fault_in_the_recording_is_isolated_and_the_consumers_keep_the_attitude(self):
@@ -155,7 +155,7 @@ class Examples(InteropTest):
         consumers = self.start_consumers(keys)
         for _, log in consumers.values():
             self.eventually(lambda: any(sample.voter == 1 for sample in samples(log)), f"voter 1 in {log}")
-        status = json.loads(self.run_program("quorient", "status", "--domain", self.domain, "--json", *(("--keys", keys) if keys else ())).stdout)
+        status = exact_json.loads(self.run_program("quorient", "status", "--domain", self.domain, "--json", *(("--keys", keys) if keys else ())).stdout)
         process = next(service["process"] for service in status["services"] if service["name"] == "voter-1")
         self.kill(process)
         for _, log in consumers.values():

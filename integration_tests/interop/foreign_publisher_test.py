@@ -1,10 +1,10 @@
 """What a foreign publisher does wrong is named in events by detectors and integrators, and ends none of them."""
-import json
 import pathlib
 import re
 import signal
 import unittest
 
+from integration_tests.harness import exact_json
 from integration_tests.harness.foreign import INTEROP, InteropTest, build
 from integration_tests.harness.processes import CONFIGURATIONS
 
@@ -52,7 +52,7 @@ class ForeignPublisher(InteropTest):
         self.assertEqual(publisher.wait(10), 0)
 
     def told(self):
-        return [json.loads(line) for line in self.events.read_text().split("\n")[:-1]]
+        return [exact_json.loads(line) for line in self.events.read_text().split("\n")[:-1]]
 
     def refused(self, since=0):
         return [e for e in self.told()[since:] if e["code"] in (REJECTED_INPUT, UNKNOWN_REVISION) and e["source_name"] in LANES]

@@ -1,5 +1,4 @@
 """ROS 2 on the wire, with plain DDS nodes in ROS 2's place: they receive what our voters write, and what their IMUs write is integrated."""
-import json
 import math
 import re
 import shutil
@@ -7,6 +6,7 @@ import signal
 import subprocess
 import unittest
 
+from integration_tests.harness import exact_json
 from integration_tests.harness.foreign import INTEROP, InteropTest, angle, build, conjugate, product
 from integration_tests.harness.processes import CONFIGURATIONS
 
@@ -48,7 +48,7 @@ class Ros2Test(InteropTest):
         return self.start_logged(f"echo-{topic}", *self.command("quorient", "echo", topic, "--json", "--domain", self.domain))[1]
 
     def whole(self, log):
-        return [json.loads(line) for line in log.read_text().split("\n")[:-1]]
+        return [exact_json.loads(line) for line in log.read_text().split("\n")[:-1]]
 
 
 class Out(Ros2Test):

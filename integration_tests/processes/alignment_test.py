@@ -1,5 +1,4 @@
 """How an attitude begins, and begins again: levelled, stated by command, lost with its publisher."""
-import json
 import math
 import os
 import re
@@ -8,6 +7,7 @@ import struct
 import subprocess
 import unittest
 
+from integration_tests.harness import exact_json
 from integration_tests.harness.processes import CONFIGURATIONS, DATA, ProcessTest
 
 RECORDING = DATA / "mimu4444_carlsson/exp_1/data.bin"
@@ -58,7 +58,7 @@ class RunningUnit(ProcessTest):
     def echo(self, topic, count):
         result = self.run_program("quorient", "echo", topic, "--count", count, "--json", "--timeout", 15, "--domain", self.domain)
         self.assertEqual(result.returncode, 0, result.stderr)
-        return [json.loads(line) for line in result.stdout.splitlines()]
+        return [exact_json.loads(line) for line in result.stdout.splitlines()]
 
     def record(self, topic, count, file):
         command = self.command("quorient", "echo", topic, "--count", count, "--json", "--timeout", 30, "--domain", self.domain)
@@ -76,7 +76,7 @@ class RunningUnit(ProcessTest):
         self.eventually(lambda: self.run_program("quorient", "health", "voter-1").returncode == 0, "the pipeline runs")
 
     def kill_publisher(self):
-        status = json.loads(self.run_program("quorient", "status", "--domain", self.domain, "--json").stdout)
+        status = exact_json.loads(self.run_program("quorient", "status", "--domain", self.domain, "--json").stdout)
         publisher = next(service for service in status["services"] if service["name"] == "sensor")
         epoch = self.echo("frame", 1)[0]["epoch"]
         os.kill(publisher["process"], signal.SIGKILL)
@@ -106,7 +106,7 @@ class Alignment(RunningUnit):
         self.eventually(lambda: self.level() == FULL, "all lanes agree again")
         after = self.echo("voter_output", 20)
         self.assertEqual(truth.wait(timeout=30), 0)
-        true_attitude = {sample["sequence_number"]: sample["attitude"] for sample in map(json.loads, file.read_text().splitlines())}
+        true_attitude = {sample["sequence_number"]: sample["attitude"] for sample in map(exact_json.loads, file.read_text().splitlines())}
         compared = 0
         for sample in after:
             self.assertEqual(sample["reset_counter"], before + 1)

@@ -1,7 +1,7 @@
 """Input that must not hurt: each a clear error before anything starts, or a counted rejection."""
-import json
 import unittest
 
+from integration_tests.harness import exact_json
 from integration_tests.harness.processes import CONFIGURATIONS, DATA, ProcessTest
 
 RECORDING = DATA / "mimu4444_carlsson/exp_1/data.bin"
@@ -135,7 +135,7 @@ class ForeignPublisher(ProcessTest):
 
         def counted():
             result = self.run_program("quorient", "status", "--domain", self.domain, "--json", "--seconds", 1.5)
-            status.update(json.loads(result.stdout))
+            status.update(exact_json.loads(result.stdout))
             detectors = [service for service in status["services"] if service["name"].startswith("fdi-")]
             return len(detectors) == 3 and all(service["foreign"] > 0 for service in detectors)
 
@@ -143,7 +143,7 @@ class ForeignPublisher(ProcessTest):
         foreign.terminate()
         foreign.wait(10)
         output, _ = pipeline.communicate(timeout=60)
-        summary = json.loads(output.splitlines()[-1])
+        summary = exact_json.loads(output.splitlines()[-1])
         self.assertLess(summary["voted"]["attitude"]["max_error_rad"], 3e-6)
         for lane in summary["lanes"].values():
             self.assertEqual(lane["isolated"], [])

@@ -1,10 +1,10 @@
 """The verbs that look at a running system and give it orders."""
-import json
 import shutil
 import signal
 import subprocess
 import unittest
 
+from integration_tests.harness import exact_json
 from integration_tests.harness.processes import CONFIGURATIONS, ProcessTest
 
 
@@ -20,7 +20,7 @@ class LiveVerbs(ProcessTest):
     def echo(self, topic, count, *arguments):
         result = self.run_program("quorient", "echo", topic, "--count", count, "--json", "--timeout", 10, "--domain", self.domain, *arguments)
         self.assertEqual(result.returncode, 0, result.stderr)
-        return [json.loads(line) for line in result.stdout.splitlines()]
+        return [exact_json.loads(line) for line in result.stdout.splitlines()]
 
     def test_echo_shows_the_voted_stream_with_either_vendor(self):
         for vendor in ("cyclonedds", "fastdds"):
@@ -67,7 +67,7 @@ class LiveVerbs(ProcessTest):
 
     def test_status_names_every_service_and_its_transport(self):
         result = self.run_program("quorient", "status", "--domain", self.domain, "--json")
-        services = {service["name"]: service for service in json.loads(result.stdout)["services"]}
+        services = {service["name"]: service for service in exact_json.loads(result.stdout)["services"]}
         self.assertEqual(
             set(services), {"sensor", "voter-1", "voter-2"} | {f"{role}-{lane}" for role in ("fdi", "attitude") for lane in "abc"}
         )

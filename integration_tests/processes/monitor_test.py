@@ -9,6 +9,7 @@ import socket
 import subprocess
 import unittest
 
+from integration_tests.harness import exact_json
 from integration_tests.harness.processes import ROOT
 from integration_tests.harness.monitored import MonitoredSystem
 
@@ -104,7 +105,7 @@ class Monitor(MonitoredSystem):
         return int(re.search(r"VmRSS:\s+(\d+)", pathlib.Path(f"/proc/{process}/status").read_text())[1])
 
     def summary(self):
-        return json.loads(re.search(r"^\{.*\}$", self.pipeline.communicate(timeout=60)[0], re.MULTILINE | re.DOTALL)[0])
+        return exact_json.loads(re.search(r"^\{.*\}$", self.pipeline.communicate(timeout=60)[0], re.MULTILINE | re.DOTALL)[0])
 
 
 if __name__ == "__main__":

@@ -1,6 +1,5 @@
 """quorient replay: the whole system offline, the same bytes on every run."""
 import itertools
-import json
 import math
 import pathlib
 import shutil
@@ -8,6 +7,7 @@ import subprocess
 import tempfile
 import unittest
 
+from integration_tests.harness import exact_json
 from integration_tests.harness.processes import BIN, CONFIGURATIONS, DATA, ProcessTest
 
 RECORDING = DATA / "mimu4444_carlsson/exp_1/data.bin"
@@ -54,7 +54,7 @@ class SimulatedLog(ProcessTest):
         self.assertEqual(self.replay(log, *fault), self.replay(log, *fault))
 
     def test_tells_when_each_lane_detected_and_isolated_the_fault(self):
-        report = json.loads(self.replay(self.simulate(), "--fault", "axis=2,kind=bias,value=0.02,start=4"))
+        report = exact_json.loads(self.replay(self.simulate(), "--fault", "axis=2,kind=bias,value=0.02,start=4"))
         self.assertEqual(report["frames"], 2400)
         self.assertEqual(report["faults"][0]["axes"], [2])
         for name, lane in report["faults"][0]["lanes"].items():
@@ -80,18 +80,18 @@ class SimulatedLog(ProcessTest):
         self.assertIn("Axes left out: none", picture.read_text())
 
     def test_blames_nobody_without_a_fault(self):
-        report = json.loads(self.replay(self.simulate()))
+        report = exact_json.loads(self.replay(self.simulate()))
         self.assertEqual(report["faults"], [])
         self.assertEqual(report["isolations"], [])
         self.assertLess(report["attitude"]["max_error_rad"], 3e-6)
 
     def test_calls_an_isolation_false_against_a_truth_alone(self):
         log = self.simulate("--fault", "axis=0,kind=scale,value=0.5,start=2")
-        report = json.loads(self.replay(log))
+        report = exact_json.loads(self.replay(log))
         # Lane c's modulus predictor may call it ambiguous.
         self.assertLessEqual({"a", "b"}, {entry["lane"] for entry in report["isolations"] if entry["axes"] == [0]})
         self.assertEqual(report["false_isolations"], [], "the log was not said to be without faults")
-        report = json.loads(self.replay(log, "--fault", "axis=2,kind=bias,value=0.02,start=9"))
+        report = exact_json.loads(self.replay(log, "--fault", "axis=2,kind=bias,value=0.02,start=9"))
         self.assertLessEqual({"a", "b"}, {entry["lane"] for entry in report["false_isolations"] if entry["axes"] == [0]})
 
     def test_refuses_a_log_that_is_not_there(self):
@@ -117,7 +117,7 @@ class Recording(ProcessTest):
             "--set", f"source.calibration={cluster}", "--set", "source.rest_s=0", "--set", "expect=null", "--json", *arguments,
         )
         self.assertEqual(result.returncode, 0, result.stderr)
-        return json.loads(result.stdout)
+        return exact_json.loads(result.stdout)
 
     def test_blames_nobody_over_the_whole_recording(self):
         report = self.replay_all()
@@ -162,7 +162,7 @@ class Flight(ProcessTest):
         system = self.write("flight.yaml", FLIGHT_SYSTEM)
         result = self.run_program("quorient", "replay", *files, "--system", system, "--json", *arguments, timeout=120)
         self.assertEqual(result.returncode, 0, result.stderr)
-        return json.loads(result.stdout)
+        return exact_json.loads(result.stdout)
 
     def test_passes_over_what_is_corrupted_and_blames_nobody(self):
         report = self.replay(DEVICES)

@@ -1,6 +1,5 @@
 """Shared memory: it is really in use, seen from outside; its loss and absence are reported; files of killed processes do no harm."""
 import contextlib
-import json
 import os
 import pathlib
 import shutil
@@ -11,6 +10,7 @@ import subprocess
 import time
 import unittest
 
+from integration_tests.harness import exact_json
 from integration_tests.harness.processes import CONFIGURATIONS, ProcessTest
 
 DEMO = CONFIGURATIONS / "demo.yaml"
@@ -93,7 +93,7 @@ class SharedMemory(ProcessTest):
 
     def services(self):
         result = self.run_program("quorient", "status", "--domain", self.domain, "--json")
-        return {service["name"]: service for service in json.loads(result.stdout)["services"]} if result.stdout else {}
+        return {service["name"]: service for service in exact_json.loads(result.stdout)["services"]} if result.stdout else {}
 
     def frames_of(self, name):
         """None before its first."""
@@ -114,7 +114,7 @@ class SharedMemory(ProcessTest):
     def newest_frame(self, *arguments):
         result = self.run_program("quorient", "echo", "frame", "--count", 1, "--json", "--timeout", 10, "--domain", self.domain, *arguments)
         self.assertEqual(result.returncode, 0, result.stderr)
-        return json.loads(result.stdout.splitlines()[0])
+        return exact_json.loads(result.stdout.splitlines()[0])
 
     def our_files(self):
         return [file.name for file in MEMORY.iterdir() if file.name.startswith(("fastrtps_", "sem.fastrtps_", "fast_datasharing_", "iceoryx_mgmt"))]
@@ -123,7 +123,7 @@ class SharedMemory(ProcessTest):
         pipeline = self.start_demo("--set", "source.duration_s=12", "--set", "source.faults=['axis=1,kind=scale,value=0.8,start=5,end=10']")
         services = self.services()
         stdout, _ = pipeline.communicate(timeout=60)
-        summary = json.loads(stdout[stdout.index("{"):])
+        summary = exact_json.loads(stdout[stdout.index("{"):])
         self.assertEqual(pipeline.returncode, 0, summary["unmet"])
         self.assertEqual({name for name, lane in summary["lanes"].items() if lane["isolated"] == [1]}, {"a", "b", "c"})
         by = lambda transport: {name for name, service in services.items() if service["transport"] == transport}  # noqa: E731
@@ -147,7 +147,7 @@ class SharedMemory(ProcessTest):
         self.processes += systems
         for system in systems:
             stdout, _ = system.communicate(timeout=60)
-            summary = json.loads(stdout[stdout.index("{"):])
+            summary = exact_json.loads(stdout[stdout.index("{"):])
             self.assertEqual(system.returncode, 0, summary["unmet"])
             frames = {name: lane["frames"] for name, lane in summary["lanes"].items()}
             self.assertGreaterEqual(min(frames.values()), 600, frames)  # of 800, and at most about 450 where they are deaf
@@ -186,7 +186,7 @@ class SharedMemory(ProcessTest):
         processes = self.start_one_lane("--set", "transport=iceoryx", "--set", "shared_memory=preferred")
         self.eventually(lambda: self.run_program("quorient", "health", "voter-1").returncode == 0, "the lane runs")
         events = self.run_program("quorient", "echo", "event", "--json", "--count", 8, "--timeout", 5, "--domain", self.domain)
-        alarms = [event for event in map(json.loads, events.stdout.splitlines()) if "iceoryx was asked for" in event["text"]]
+        alarms = [event for event in map(exact_json.loads, events.stdout.splitlines()) if "iceoryx was asked for" in event["text"]]
         self.assertTrue(alarms, events.stdout)
         self.assertEqual({event["severity"] for event in alarms}, {3})
         for process in processes:

@@ -1,11 +1,11 @@
 """Keys in one command, refusals before anything starts, the secured demo on both vendors, and who may send orders."""
-import json
 import os
 import signal
 import stat
 import subprocess
 import unittest
 
+from integration_tests.harness import exact_json
 from integration_tests.harness.processes import CONFIGURATIONS, ProcessTest
 
 DEMO = CONFIGURATIONS / "demo.yaml"
@@ -115,7 +115,7 @@ class SecuredDemo(WithKeys):
         self.assertEqual(answered.stdout.count("has not isolated"), 3, "an operator is answered by every detector")
         output, errors = pipeline.communicate(timeout=40)
         self.assertEqual(pipeline.returncode, 0, errors)
-        self.judge(json.loads(output))
+        self.judge(exact_json.loads(output))
 
     def start_demo(self):
         process = subprocess.Popen(

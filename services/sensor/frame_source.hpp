@@ -1,6 +1,7 @@
 #pragma once
 
 #include "quorient/messages/cluster_description.hpp"
+#include "quorient/messages/codes.hpp"
 #include "quorient/messages/sensor_frame.hpp"
 #include "quorient/messages/truth_state.hpp"
 #include "quorient/runtime/event_loop.hpp"
@@ -22,6 +23,7 @@ struct Notice {
     Severity severity = Severity::info;
     AxisMask axes = 0;
     std::string text;
+    EventCode code = EventCode::rejected_input;
 };
 
 /// Where frames come from: a simulated instrument, a log, other nodes. Sequences may jump forward, never back.

@@ -10,6 +10,9 @@ namespace quorient::sensor {
 
 namespace {
 
+/// Discovery takes about a second. A topic that nobody publishes by then is named before five are over.
+constexpr std::int64_t publisher_patience_ns = 3'000'000'000;
+
 class Ros2ImuSource final : public FrameSource {
 public:
     Ros2ImuSource(const system::SensorSettings& settings, std::uint64_t epoch)
@@ -17,7 +20,9 @@ public:
           faults_(*settings.cluster, settings.source.scenario.seed),
           description_(describe(*settings.cluster)),
           alignment_(settings_, settings.kind, settings.cluster->interval_s),
-          told_(settings_.imus.size(), ImuAlignment::Fault::none)
+          told_(settings_.imus.size(), ImuAlignment::Fault::none),
+          topics_(settings_.imus.size(), Topic::awaited),
+          domain_(settings.process.bus.domain)
     {
         description_.epoch = epoch;
         description_.revision = 1;
@@ -40,10 +45,13 @@ public:
     void attach(bus::Bus& bus, runtime::EventLoop& loop) override
     {
         clock_ = &loop.clock();
+        attached_ns_ = clock_->steady_ns();
         subscriptions_.resize(settings_.imus.size());
+        heard_.resize(settings_.imus.size());
         for (std::size_t imu = 0; imu < settings_.imus.size(); ++imu) {
             const auto topic = bus::ros2::imu(settings_.imus[imu].topic.c_str(), bus::ros2::requested);
             subscriptions_[imu] = &loop.on(bus.subscribe(topic), [this, imu](const bus::ros2::Imu& message) {
+                heard_[imu] = true;
                 alignment_.add(imu, message, clock_->steady_ns(), subscriptions_[imu]->status().matched);
             });
         }
@@ -71,15 +79,14 @@ public:
 
     std::optional<Notice> notice() override
     {
+        for (std::size_t imu = 0; imu < topics_.size(); ++imu)
+            if (auto notice = topic_notice(imu)) return notice;
         for (std::size_t imu = 0; imu < told_.size(); ++imu) {
             const auto fault = alignment_.instruments()[imu].fault;
             if (fault == told_[imu]) continue;
             told_[imu] = fault;
-            AxisMask axes = 0;
-            for (std::size_t axis = 0; axis < description_.axis_count; ++axis)
-                axes |= description_.instrument[axis] == imu ? axis_bit(axis) : 0;
             const bool well = fault == ImuAlignment::Fault::none;
-            return Notice{well ? Severity::info : Severity::warning_high, axes,
+            return Notice{well ? Severity::info : Severity::warning_high, axes_of(imu),
                           fmt::format("{}: {}", settings_.imus[imu].name, well ? "measures again" : to_string(fault))};
         }
         if (told_steps_ == alignment_.clock_steps()) return std::nullopt;
@@ -88,6 +95,52 @@ public:
     }
 
 private:
+    /// What is known of an IMU's topic before its first message.
+    enum class Topic : std::uint8_t {
+        awaited,  ///< nothing was said yet
+        missed,   ///< its silence was reported
+        heard,    ///< messages come, or came
+    };
+
+    AxisMask axes_of(std::size_t imu) const
+    {
+        AxisMask axes = 0;
+        for (std::size_t axis = 0; axis < description_.axis_count; ++axis) axes |= description_.instrument[axis] == imu ? axis_bit(axis) : 0;
+        return axes;
+    }
+
+    /// Names a topic from which nothing comes, once, and once more when it comes.
+    std::optional<Notice> topic_notice(std::size_t imu)
+    {
+        auto& topic = topics_[imu];
+        if (topic == Topic::heard || subscriptions_.empty()) return std::nullopt;
+        const auto shown = ros_name(settings_.imus[imu].topic);
+        if (heard_[imu]) {
+            const bool was_missed = topic == Topic::missed;
+            topic = Topic::heard;
+            if (!was_missed) return std::nullopt;
+            return Notice{Severity::info, axes_of(imu), fmt::format("{}: {} is published now", settings_.imus[imu].name, shown), EventCode::no_match};
+        }
+        if (topic == Topic::missed || clock_->steady_ns() - attached_ns_ < publisher_patience_ns) return std::nullopt;
+        topic = Topic::missed;
+        return Notice{Severity::warning_high, axes_of(imu), why_silent(imu, shown), EventCode::no_match};
+    }
+
+    std::string why_silent(std::size_t imu, std::string_view shown)
+    {
+        const auto& name = settings_.imus[imu].name;
+        const auto status = subscriptions_[imu]->status();
+        if (status.matched > 0) return fmt::format("{}: {} has a publisher that sends nothing", name, shown);
+        if (status.incompatible > 0) return fmt::format("{}: the publisher of {} offers another {}", name, shown, status.policy);
+        return fmt::format("{}: nobody publishes sensor_msgs/Imu on {}: wrong name, type, interface or ROS_DOMAIN_ID (here {})?", name, shown, domain_);
+    }
+
+    /// "rt/imu/data" as ROS 2 writes it.
+    static std::string_view ros_name(std::string_view dds_name)
+    {
+        return dds_name.substr(dds_name.find('/'));
+    }
+
     void fill(std::uint64_t sequence, SensorFrame& frame)
     {
         const auto length_ns = alignment_.end_ns() - alignment_.begin_ns();
@@ -121,7 +174,11 @@ private:
     ClusterDescription description_;
     ImuAlignment alignment_;
     std::vector<ImuAlignment::Fault> told_;
+    std::vector<Topic> topics_;  ///< for each IMU
+    std::vector<bool> heard_;    ///< for each IMU: whether a message came
     std::vector<bus::Subscription<bus::ros2::Imu>*> subscriptions_;
+    std::uint32_t domain_;
+    std::int64_t attached_ns_ = 0;
     const runtime::Clock* clock_ = nullptr;
     std::uint64_t told_steps_ = 0;
     std::uint64_t next_ = 0;

@@ -16,6 +16,8 @@ constexpr std::int64_t longest_catch_up_intervals = 4;
 /// After the last frame, for the slowest consumer to take it.
 constexpr std::int64_t linger_ns = 500'000'000;
 
+constexpr std::int64_t notice_period_ns = 500'000'000;
+
 }  // namespace
 
 SensorPublisher::SensorPublisher(const system::SensorSettings& settings, std::unique_ptr<FrameSource> source, bus::Bus& bus,
@@ -38,6 +40,7 @@ SensorPublisher::SensorPublisher(const system::SensorSettings& settings, std::un
     loop.on(bus.subscribe(bus::topics::status), [this](const ServiceStatus& status) { on_status(status); });
     node_.on_order({CommandAction::inject, CommandAction::clear}, [this](const FaultCommand& command) { on_command(command); });
     source_->attach(bus, loop);
+    loop.every(notice_period_ns, [this] { report_notices(); });  // also while the first frame cannot begin
     descriptions_.publish(source_->description());
     node_.set_state(ServiceState::ready);
     wait_timer_.set(loop.clock().steady_ns() + static_cast<std::int64_t>(settings.wait_s * 1e9));
@@ -95,12 +98,16 @@ void SensorPublisher::tick()
     frame_timer_.set(due_ns(next_));
 }
 
+void SensorPublisher::report_notices()
+{
+    while (const auto notice = source_->notice()) node_.report(notice->code, notice->severity, identity_of(frame_), notice->axes, notice->text);
+}
+
 bool SensorPublisher::publish(std::uint64_t sequence)
 {
     const auto arrival = node_.clock().steady_ns();
     const auto advance = source_->advance_to(sequence, frame_, truth_);
-    while (const auto notice = source_->notice())
-        node_.report(EventCode::rejected_input, notice->severity, identity_of(frame_), notice->axes, notice->text);
+    report_notices();
     switch (advance) {
         case Advance::end:
             return false;

@@ -23,6 +23,7 @@ private:
     void start();
     void tick();
     bool publish(std::uint64_t sequence);
+    void report_notices();
     std::int64_t due_ns(std::uint64_t sequence) const;
     double scenario_s() const;
 

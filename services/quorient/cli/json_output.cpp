@@ -2,11 +2,22 @@
 
 #include <fmt/format.h>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 
 namespace quorient::cli {
 
 namespace {
+
+/// Whole numbers up to here are exact in readers that have only doubles (JavaScript, jq).
+constexpr std::uint64_t largest_exact = std::uint64_t{1} << 53;
+
+bool is_exact_in_doubles(const Json& whole)
+{
+    if (whole.is_number_unsigned()) return whole.get<std::uint64_t>() <= largest_exact;
+    const auto number = whole.get<std::int64_t>();
+    return number >= -static_cast<std::int64_t>(largest_exact) && number <= static_cast<std::int64_t>(largest_exact);
+}
 
 /// nlohmann's own dump writes the shortest text that reads back to the same number; the contract asks for 17 digits.
 void append(std::string& text, const Json& value)
@@ -30,6 +41,8 @@ void append(std::string& text, const Json& value)
             append(text, member);
         }
         text += '}';
+    } else if (value.is_number_integer() && !is_exact_in_doubles(value)) {
+        text += '"' + value.dump() + '"';
     } else {
         text += value.dump();
     }

@@ -19,6 +19,13 @@ TEST(JsonOutput, reads_back_to_the_same_bits)
         EXPECT_EQ(Json::parse(dump(value)).get<double>(), value);
 }
 
+TEST(JsonOutput, writes_whole_numbers_that_doubles_cannot_hold_as_strings)
+{
+    EXPECT_EQ(dump({{"last", 9007199254740992U}, {"first", 9007199254740993U}, {"most", 18446744073709551615U}}),
+              R"({"last":9007199254740992,"first":"9007199254740993","most":"18446744073709551615"})");
+    EXPECT_EQ(dump({-9007199254740992, -9007199254740993}), R"([-9007199254740992,"-9007199254740993"])");
+}
+
 TEST(JsonOutput, writes_null_for_what_is_not_finite)
 {
     EXPECT_EQ(dump({{"a", std::nan("")}, {"b", {1.0, INFINITY}}, {"c", nullptr}}), R"({"a":null,"b":[1,null],"c":null})");

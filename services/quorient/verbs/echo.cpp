@@ -9,10 +9,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <memory>
+#include <set>
 
 namespace quorient::cli {
 
 namespace {
+
+/// After which a user wonders whether anything comes at all.
+constexpr std::int64_t patience_ns = 5'000'000'000;
 
 struct EchoOptions {
     BusOptions bus;
@@ -28,6 +32,12 @@ std::string full_name(const std::string& topic)
     return topic.find('/') == std::string::npos ? "quorient/" + topic : topic;
 }
 
+/// Whole numbers are for people here, however large.
+std::string text_of_value(const Json& value)
+{
+    return value.is_number_integer() ? value.dump() : dump(value);
+}
+
 /// @returns false where standard output takes no more.
 template <class Message>
 bool show(const Message& message, bool json)
@@ -38,19 +48,32 @@ bool show(const Message& message, bool json)
     } else {
         for (const auto& [name, value] : fields.items()) {
             const auto word = word_in(message, name);
-            fmt::print("{}: {}{}\n", name, dump(value), word.empty() ? std::string{} : fmt::format(" ({})", word));
+            fmt::print("{}: {}{}\n", name, text_of_value(value), word.empty() ? std::string{} : fmt::format(" ({})", word));
         }
         fmt::print("---\n");
     }
     return std::fflush(stdout) == 0;
 }
 
+/// What came, for those that see too little.
+struct Came {
+    std::uint64_t shown = 0;
+    std::set<std::uint32_t> other_units;
+
+    std::string explained(const EchoOptions& options) const
+    {
+        const auto others = other_units.empty() ? std::string{} : fmt::format("; there are samples of unit {}", fmt::join(other_units, ", "));
+        return fmt::format("no sample of {} of unit {} came in domain {} on '{}'{}", full_name(options.topic), options.bus.unit, options.bus.domain,
+                           options.bus.interface, others);
+    }
+};
+
 int echo(const EchoOptions& options)
 {
     const auto bus = options.bus.open("quorient-echo");
     const runtime::SystemClock clock;
     runtime::EventLoop loop{*bus, clock, runtime::termination_requested()};
-    std::uint64_t shown = 0;
+    Came came;
     bool known = false;
     std::vector<std::string> names;
     const auto subscribe_if_named = [&](const auto& topic) {
@@ -59,8 +82,9 @@ int echo(const EchoOptions& options)
         if (full_name(options.topic) != topic.spec.name) return;
         known = true;
         loop.on(bus->subscribe(topic), [&](const Message& message) {
-            if (message.unit != options.bus.unit || (options.count != 0 && shown == options.count)) return;
-            if (!show(message, options.json) || ++shown == options.count) loop.quit(ExitCode::done);
+            if (message.unit != options.bus.unit) return void(came.other_units.insert(message.unit));
+            if (options.count != 0 && came.shown == options.count) return;
+            if (!show(message, options.json) || ++came.shown == options.count) loop.quit(ExitCode::done);
         });
     };
     std::apply([&](const auto&... topic) { (subscribe_if_named(topic), ...); }, bus::topics::all);
@@ -70,7 +94,13 @@ int echo(const EchoOptions& options)
     }
     if (options.timeout_s > 0)
         loop.timer([&] { loop.quit(ExitCode::not_as_asked); }).set(clock.steady_ns() + static_cast<std::int64_t>(options.timeout_s * 1e9));
-    return loop.run();
+    loop.timer([&] {
+            if (came.shown == 0) fmt::print(stderr, "{} yet\n", came.explained(options));
+        }).set(clock.steady_ns() + patience_ns);
+    const int exit_code = loop.run();
+    if (exit_code == ExitCode::not_as_asked)
+        fmt::print(stderr, "{}\n", came.shown == 0 ? came.explained(options) : fmt::format("{} samples came in {:g} s", came.shown, options.timeout_s));
+    return exit_code;
 }
 
 }  // namespace
