@@ -14,6 +14,10 @@ namespace {
 /// Attitudes whose truth never comes (a foreign publisher's) must not pile up.
 constexpr std::size_t most_waiting = 4096;
 
+// As services wait before they follow another publisher (runtime::FrameIntake).
+constexpr double silent_intervals = 5;
+constexpr double silent_at_least_s = 0.1;
+
 }  // namespace
 
 void Errors::add(Identity identity, double error_rad)
@@ -86,12 +90,31 @@ void RunObserver::on_frame(const SensorFrame& frame)
 
 void RunObserver::on_truth(const TruthState& truth)
 {
-    if (truth.unit != system_.unit) return;
-    if (truth.epoch != newest_truth_.epoch) {
-        if (truth.epoch < newest_truth_.epoch) return;
-        truth_.clear();
-        std::erase_if(voted_sequences_, [&](const auto& voted) { return voted.first != truth.epoch; });
-    }
+    if (truth.unit != system_.unit || truth.epoch < newest_truth_.epoch) return;
+    if (truth_frames_ > 0 && truth.epoch != newest_truth_.epoch) return await(truth);
+    for (auto& [epoch, later] : later_) later = {{}, true};
+    count(truth);
+}
+
+/// A restart is counted from its first frame. From a second publisher services take nothing while they wait for the first one.
+void RunObserver::await(const TruthState& truth)
+{
+    auto& later = later_[truth.epoch];
+    if (!later.since_present.empty() && truth.sequence <= later.since_present.back().sequence) return;
+    later.since_present.push_back(truth);
+    const auto frames = truth.sequence - later.since_present.front().sequence + 1;
+    if (static_cast<double>(frames) * interval_s() < std::max(silent_intervals * interval_s(), silent_at_least_s)) return;
+    const LaterEpoch taken = std::move(later);
+    later_.erase(later_.begin(), later_.upper_bound(truth.epoch));
+    truth_.clear();
+    std::erase_if(voted_sequences_, [&](const auto& voted) { return voted.first != truth.epoch; });
+    newest_truth_ = {truth.epoch, 0};
+    if (taken.overlaps) return count(truth);
+    for (const TruthState& each : taken.since_present) count(each);
+}
+
+void RunObserver::count(const TruthState& truth)
+{
     ++truth_frames_;
     newest_truth_ = identity_of(truth);
     truth_[truth.sequence] = truth;

@@ -111,6 +111,16 @@ private:
         Errors* errors;
     };
 
+    /// The truth of a later epoch while the present one may still go on. Services ignore a second publisher until the first one is silent; so
+    /// does the observer, which knows no clock: until as many frames of the later epoch came as last for that silence, and none of the present.
+    struct LaterEpoch {
+        std::vector<TruthState> since_present;  ///< since the present epoch's newest truth
+        bool overlaps = false;                  ///< came between truths of the present epoch: a second publisher, and no restart
+    };
+
+    void count(const TruthState& truth);
+    void await(const TruthState& truth);
+    double interval_s() const { return description_ ? description_->interval_s : system_.interval_s; }
     void compare(Identity identity, const std::array<double, 4>& attitude, Errors& errors);
     void compare_waiting();
     LaneRecord* lane_of(std::uint32_t lane);
@@ -124,6 +134,7 @@ private:
     Watch watch_;
     std::optional<attitude::Integrator> shadow_;
     std::optional<ClusterDescription> description_;
+    std::map<std::uint64_t, LaterEpoch> later_;                                   // by epoch
     std::unordered_map<std::uint64_t, TruthState> truth_;                         // by sequence, newest epoch only
     std::map<std::uint64_t, std::unordered_set<std::uint64_t>> voted_sequences_;  // by epoch, from the newest truth's on
     std::map<std::uint32_t, std::uint64_t> output_sequences_;                     // by voter

@@ -1,0 +1,101 @@
+#include "quorient/evaluation/run_observer.hpp"
+
+#include "quorient/messages/meaning.hpp"
+
+#include <gtest/gtest.h>
+
+namespace quorient::evaluation {
+namespace {
+
+constexpr std::uint64_t own = 1000, later = 2000;
+
+/// One voter of a unit without lanes; truths and voted attitudes come as the test says.
+class RunObserverTest : public testing::Test {
+protected:
+    RunObserverTest()
+    {
+        system.unit = 1;
+        system.interval_s = 0.005;  // services wait for 100 ms, 20 frames
+        observer.emplace(system, Shadow::off);
+    }
+
+    void truth(std::uint64_t epoch, std::uint64_t sequence)
+    {
+        TruthState sample;
+        sample.unit = 1;
+        sample.epoch = epoch;
+        sample.sequence = sequence;
+        sample.attitude = {1, 0, 0, 0};
+        sample.attitude_known = 1;
+        observer->on_truth(sample);
+    }
+
+    void voted(std::uint64_t epoch, std::uint64_t sequence)
+    {
+        VotedAttitude sample;
+        sample.unit = 1;
+        sample.epoch = epoch;
+        sample.sequence = sequence;
+        sample.output_sequence = ++output;
+        sample.attitude = {1, 0, 0, 0};
+        sample.level = octet(VoteLevel::full);
+        observer->on_voted(sample);
+    }
+
+    /// Published and voted on.
+    void frames(std::uint64_t epoch, std::uint64_t begin, std::uint64_t end)
+    {
+        for (std::uint64_t sequence = begin; sequence < end; ++sequence) {
+            truth(epoch, sequence);
+            voted(epoch, sequence);
+        }
+    }
+
+    system::System system;
+    std::optional<RunObserver> observer;
+    std::uint64_t output = 0;
+};
+
+TEST_F(RunObserverTest, counts_no_frame_of_a_second_publisher_that_services_ignore_as_missing)
+{
+    frames(own, 0, 100);
+    for (std::uint64_t sequence = 0; sequence < 300; ++sequence) {
+        truth(later, sequence);
+        frames(own, 100 + sequence, 101 + sequence);
+    }
+    EXPECT_EQ(observer->missing_voted(), 0U);
+    EXPECT_EQ(observer->truth_frames(), 400U);
+    EXPECT_EQ(observer->newest_truth().epoch, own);
+}
+
+TEST_F(RunObserverTest, counts_a_missing_frame_of_the_publisher_that_services_follow)
+{
+    frames(own, 0, 100);
+    truth(own, 100);
+    frames(own, 101, 200);
+    EXPECT_EQ(observer->missing_voted(), 1U);
+}
+
+TEST_F(RunObserverTest, counts_a_restarted_publisher_from_its_first_frame)
+{
+    frames(own, 0, 100);
+    truth(later, 0);  // no voted attitude
+    frames(later, 1, 100);
+    EXPECT_EQ(observer->newest_truth().epoch, later);
+    EXPECT_EQ(observer->missing_voted(), 1U);
+    EXPECT_EQ(observer->voted().errors.compared, 199U);
+}
+
+TEST_F(RunObserverTest, follows_a_second_publisher_once_the_first_one_is_silent_as_services_do)
+{
+    frames(own, 0, 100);
+    truth(later, 0);
+    frames(own, 100, 101);
+    for (std::uint64_t sequence = 1; sequence < 20; ++sequence) truth(later, sequence);  // services still wait for the first one
+    frames(later, 20, 100);
+    EXPECT_EQ(observer->newest_truth().epoch, later);
+    EXPECT_LE(observer->missing_voted(), 1U);  // the frame at the very end of the silence
+}
+
+}  // namespace
+}  // namespace quorient::evaluation
