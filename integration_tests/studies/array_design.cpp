@@ -276,8 +276,9 @@ void append_runs(std::string& text, const std::vector<Timed>& rows)
     }
 }
 
-void append_survey(std::string& text, const cli::Chart& chart)
+void append_survey(std::string& text, const Survey& surveyed)
 {
+    const cli::Chart& chart = surveyed.chart;
     text += "\n## Surviving ten years, 2e-6 failures per axis and hour\n\n| axes |";
     for (const cli::Series& series : chart.series) text += " " + series.name + " |";
     text += "\n|---|" + [&] {
@@ -293,6 +294,7 @@ void append_survey(std::string& text, const cli::Chart& chart)
         }
         text += '\n';
     }
+    fmt::format_to(std::back_inserter(text), "\nStandard errors are {:.4f} at most. The designed arrays are those that `design` lists first by its objective `trace`.\n", surveyed.largest_error);
 }
 
 }  // namespace
@@ -351,9 +353,11 @@ std::vector<Enumerated> enumerations(const RunSettings& settings)
     return rows;
 }
 
-cli::Chart survival_chart(const RunSettings& settings, const OnProgress& on_progress)
+Survey survey(const RunSettings& settings, const OnProgress& on_progress)
 {
-    cli::Chart chart{"Surviving ten years, 2e-6 failures per axis and hour", "axes", "probability", false, false, {}};
+    Survey result;
+    result.chart = {"Surviving ten years, 2e-6 failures per axis and hour", "axes", "probability", false, false, {}};
+    cli::Chart& chart = result.chart;
     std::size_t all = 0, done = 0;
     for (const Family& family : families()) all += family.axes.size();
     for (const Family& family : families()) {
@@ -361,11 +365,12 @@ cli::Chart survival_chart(const RunSettings& settings, const OnProgress& on_prog
         for (const std::size_t n : family.axes) {
             const auto survival = design::survival(family.make(n, settings), ten_years(settings), settings.seed, on_all_cores(settings)).value();
             series.points.emplace_back(static_cast<double>(n), survival.probability);
+            result.largest_error = std::max(result.largest_error, survival.standard_error);
             if (on_progress) on_progress(++done, all);
         }
         chart.series.push_back(std::move(series));
     }
-    return chart;
+    return result;
 }
 
 Report array_design(const RunSettings& settings, const OnProgress& on_progress)
@@ -375,12 +380,13 @@ Report array_design(const RunSettings& settings, const OnProgress& on_progress)
     const auto ranking = paper_004_ranking(settings);
     const auto enumerated = enumerations(settings);
     const auto timed = runs(settings);
-    report.charts = {survival_chart(settings, on_progress)};
+    const Survey surveyed = survey(settings, on_progress);
+    report.charts = {surveyed.chart};
     append_proofs(report.text, proofs);
     append_ranking(report.text, ranking);
     append_enumerations(report.text, enumerated);
     append_runs(report.text, timed);
-    append_survey(report.text, report.charts.front());
+    append_survey(report.text, surveyed);
     for (const Proof& proof : proofs)
         report.json["proofs"].push_back({{"asked", proof.asked}, {"figure", proof.figure}, {"found", proof.found}, {"known", proof.known}, {"bound", proof.bound}});
     for (const Ranked& row : ranking)

@@ -47,7 +47,12 @@ struct Enumerated {
 
 std::vector<Enumerated> enumerations(const RunSettings& settings);
 
-/// The survey: the probability of surviving ten years against the number of axes, by family.
-cli::Chart survival_chart(const RunSettings& settings, const OnProgress& on_progress);
+/// The probability of surviving ten years against the number of axes, by family.
+struct Survey {
+    cli::Chart chart;
+    double largest_error = 0;  ///< standard error of its Monte Carlo
+};
+
+Survey survey(const RunSettings& settings, const OnProgress& on_progress);
 
 }  // namespace quorient::studies
