@@ -37,7 +37,10 @@ std::string Roudi::start(const system::System& system, Processes& processes)
                 "iceoryx's daemon needs {} MiB in /dev/shm, {} MiB are free: quorient clean removes what killed processes left",
                 needed >> 20, bus::free_shared_memory() >> 20);
         const auto configuration = runtime::run_directory() / "roudi.toml";
-        std::ofstream{configuration} << bus::roudi_configuration(endpoints, endpoints);
+        std::ofstream file{configuration};
+        file << bus::roudi_configuration(endpoints, endpoints);
+        file.close();
+        if (!file) return fmt::format("{}: cannot be written; QUORIENT_RUN_DIR chooses another folder", configuration.string());
         processes.add_daemon("roudi", {"/usr/bin/iox-roudi", "-c", configuration.string()},
                              (runtime::run_directory() / "roudi.log").string());
         processes.start();

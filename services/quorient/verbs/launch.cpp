@@ -16,9 +16,12 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <set>
 #include <thread>
@@ -117,9 +120,17 @@ std::vector<Started> chosen_processes(const system::System& system, const std::v
     return chosen;
 }
 
+/// A process whose log cannot be written would print into this verb's own output.
+std::string writable_log(const std::string& name)
+{
+    const auto file = (runtime::run_directory() / (name + ".log")).string();
+    errno = 0;
+    if (!std::ofstream(file, std::ios::app)) fail(fmt::format("{}: cannot be written: {}; QUORIENT_RUN_DIR chooses another folder", file, std::strerror(errno)));
+    return file;
+}
+
 void add_processes(const std::vector<Started>& chosen, const SystemOptions& options, launch::Processes& processes)
 {
-    const auto run_directory = runtime::run_directory();
     for (const auto& started : chosen) {
         std::vector<std::string> command{program(started.service), options.file};
         if (started.names.size() == 1) command.push_back("--name");
@@ -127,7 +138,7 @@ void add_processes(const std::vector<Started>& chosen, const SystemOptions& opti
         if (!options.dds.empty()) command.insert(command.end(), {"--dds", options.dds});
         if (options.domain) command.insert(command.end(), {"--domain", std::to_string(*options.domain)});
         for (const auto& assignment : options.assignments()) command.insert(command.end(), {"--set", assignment});
-        processes.add(started.name(), started.names, std::move(command), (run_directory / (started.name() + ".log")).string());
+        processes.add(started.name(), started.names, std::move(command), writable_log(started.name()));
     }
 }
 
