@@ -38,7 +38,7 @@ CELLS = {
     "launch": {"not as asked": (DEMO, "--duration", 0.05, "--set", "expect=null", *SOON), "bad usage": (DEMO, "--duration", -1), "bad input": (DEMO, "--set", "source.rate_hz=0")},
     "echo": {"not as asked": ("frame", "--count", 1, "--timeout", 0.1, *SOON), "bad usage": ("frame", "--timeout", -1), "bad input": ("frames", *SOON)},
     "status": {"not as asked": ("--seconds", 0.1, *SOON), "bad usage": ("--seconds", 0), "bad input": ("--interface", "nowhere0")},
-    "inject": {"bad usage": ("--unit", -1, "axis=0,kind=zero"), "bad input": ("axis=0,kind=tired",)},
+    "inject": {"bad usage": ("--clear", "axis=0,kind=zero"), "bad input": ("axis=0,kind=tired",), "nothing to do": ()},
     "readmit": {"bad usage": ("--axis", 99)},
     "reset": {"bad usage": ("--attitude", "1,0,0")},
     "record": {"not as asked": ("{folder}/new", "--duration", 0.1, *SOON), "bad usage": ("{folder}/new", "--duration", -1), "bad input": ("{folder}/no/new", *SOON),
@@ -177,6 +177,8 @@ class VerbsTest(ProcessTest):
             self.assertEqual(ended.returncode, CODES[outcome], ended.stderr)
             if CODES[outcome] != DONE and (verb, outcome) not in SPEAKS_ON_STDOUT:
                 self.assertNotEqual(ended.stderr.strip(), "", "no word why")
+            if outcome == "nothing to do":
+                self.assertEqual(ended.stdout, "", "an output of nothing")
             if outcome.startswith("output"):
                 self.assertIn("standard output cannot be written", ended.stderr)
             if outcome == "disk full":

@@ -43,6 +43,7 @@ FaultCommand inject_command(const CommandOptions& options)
         command.action = octet(CommandAction::clear);
         return command;
     }
+    if (options.fault.empty()) fail("nothing to do: give a fault, as in axis=1,kind=scale,value=0.8,start=0,end=10, or --clear");
     const auto fault = simulation::parse_fault(options.fault);
     if (!fault || fault->axes == 0) {
         fmt::print(stderr, "{}\n", fault ? "a live fault names its axis: axis=1,…" : fault.error());
@@ -63,8 +64,8 @@ void add_inject(Program& program)
     auto verb = program.verb("inject", "Break an axis of a running unit; times count from now");
     auto options = std::make_shared<CommandOptions>();
     options->bus.add_to(verb, "operator");
-    verb.option("fault", options->fault, "axis=1,kind=scale,value=0.8,start=0,end=10");
-    verb.flag("--clear", options->clear, "Take all faults back instead");
+    const auto fault = verb.option("fault", options->fault, "axis=1,kind=scale,value=0.8,start=0,end=10");
+    verb.flag("--clear", options->clear, "Take all faults back instead").in_place_of({fault});
     verb.footer("Example:\n  quorient inject axis=1,kind=bias,value=0.1,start=0");
     verb.not_as_asked_if("a service refused the order, or did not answer");
     verb.run([options] { finish(send(*options, inject_command(*options))); });

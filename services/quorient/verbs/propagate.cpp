@@ -43,8 +43,9 @@ void print_list(bool json)
 
 void print_row(std::size_t row, const attitude::Quaternion& q, bool json)
 {
-    if (json) fmt::print("{}\n", dump({{"row", row}, {"attitude", attitude::to_array(q)}}));
-    else fmt::print("{},{:.17g},{:.17g},{:.17g},{:.17g}\n", row, q.w(), q.x(), q.y(), q.z());
+    if (json) return fmt::print("{}\n", dump({{"row", row}, {"attitude", attitude::to_array(q)}}));
+    if (row == 0) fmt::print("row,q_w,q_x,q_y,q_z\n");
+    fmt::print("{},{:.17g},{:.17g},{:.17g},{:.17g}\n", row, q.w(), q.x(), q.y(), q.z());
 }
 
 void run(const PropagateOptions& options)
@@ -59,7 +60,6 @@ void run(const PropagateOptions& options)
     auto input = CsvReader::open(options.file, {.columns = 3});
     if (!input) fail(input.error());
     constexpr double largest_rad = 1e6;
-    if (!options.json) fmt::print("row,q_w,q_x,q_y,q_z\n");
     CsvRow row;
     for (std::size_t number = 0;; ++number) {
         const auto more = input->next(row);
