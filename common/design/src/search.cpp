@@ -4,8 +4,10 @@
 #include "quorient/design/mission.hpp"
 #include "quorient/design/recognise.hpp"
 #include "quorient/geometry/figures.hpp"
+#include "quorient/geometry/layouts.hpp"
 #include "refine.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <memory>
 #include <random>
@@ -15,7 +17,7 @@ namespace quorient::design {
 namespace {
 
 constexpr std::size_t refined_blindly = 3;
-constexpr std::size_t judged_by_survival = 8;
+constexpr std::size_t judged_by_survival = 24;
 
 /// What a task of the search found.
 struct Found {
@@ -41,6 +43,7 @@ public:
         const Choices all = choices(brief_);
         if (all.stands.empty()) choose_places(all.places, result);
         else refine(arrangements(all.stands, settings_.starts), result);
+        add_common_choices();
         for_each_(pool_.size(), [&](std::size_t i) { pool_[i].figures = judge(pool_[i].axes, yardstick_); });
         refine_blindly();
         if (const auto kept = keep_front(result); !kept) return tl::unexpected(kept.error());
@@ -112,6 +115,16 @@ private:
         refine(arrangements(lists, std::max<std::size_t>(1, settings_.starts / lists.size())), result);
     }
 
+    /// No aim leads to the arrays that survive longest: which failures are isolated decides, and accuracy hardly. Cones are among the best.
+    void add_common_choices()
+    {
+        const bool any_cone = std::holds_alternative<FreeMounting>(brief_.mounting) && brief_.axes_each == 1 && brief_.kept.rows() == 0 &&
+                              brief_.minimum_angle_rad == 0;
+        if (settings_.objective != Objective::survival || !any_cone) return;
+        for (const char* family : {"cone", "cone-axis"})
+            if (const auto cone = geometry::layout(fmt::format("{}-{}", family, brief_.axis_count()))) pool_.push_back({nullptr, {}, cone->axes, {}});
+    }
+
     void sort_pool()
     {
         std::ranges::stable_sort(pool_, [&](const Found& first, const Found& second) {
@@ -138,6 +151,13 @@ private:
         pool_.insert(pool_.end(), refined.begin(), refined.end());
     }
 
+    /// What is better in everything else may survive less long: there only designs that are alike leave.
+    bool beats(const Figures& better, const Figures& other) const
+    {
+        const auto objective = settings_.objective;
+        return as_good(better, other, objective) && (objective != Objective::survival || as_good(other, better, objective));
+    }
+
     /// Sorted by the objective, each design stays that no better one equals in everything else.
     std::vector<Found> front()
     {
@@ -146,7 +166,7 @@ private:
         for (const Found& found : pool_) {
             if (shortfall(found.figures, brief_) > 0) continue;
             if (!kept.empty() && names_failures(kept.front().figures, brief_) && !names_failures(found.figures, brief_)) break;
-            const bool beaten = std::ranges::any_of(kept, [&](const Found& other) { return as_good(other.figures, found.figures, settings_.objective); });
+            const bool beaten = std::ranges::any_of(kept, [&](const Found& other) { return beats(other.figures, found.figures); });
             if (!beaten) kept.push_back(found);
         }
         return kept;

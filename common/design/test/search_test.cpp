@@ -2,6 +2,7 @@
 
 #include "briefs.hpp"
 #include "quorient/design/recognise.hpp"
+#include "quorient/design/mission.hpp"
 #include "quorient/design/search.hpp"
 #include "quorient/geometry/layouts.hpp"
 
@@ -255,6 +256,35 @@ TEST(Search, puts_the_better_objective_first)
         for (std::size_t k = 1; k < result.designs.size(); ++k)
             EXPECT_LE(cost(result.designs[k - 1].figures, entry.objective), cost(result.designs[k].figures, entry.objective) + 1e-7) << entry.name;
     }
+}
+
+TEST(Search, for_survival_is_not_beaten_by_the_common_cones)
+{
+    Brief brief = single_axes(7);
+    brief.mission = Mission{.hours = 87'660, .axis_failures_per_h = 2e-6, .trials = 500};
+    SearchSettings settings = settings_of(Objective::survival);
+    settings.starts = 2;
+    const double reached = best(brief, settings).figures.survival->probability;
+    for (const char* layout : {"cone-7", "cone-axis-7"})
+        EXPECT_GE(reached, survival(geometry::layout(layout).value(), *brief.mission, settings.seed)->probability) << layout;
+}
+
+TEST(MountedTrace, of_a_vanishing_error_is_that_of_the_array_as_designed)
+{
+    for (const char* layout : {"cone-5", "dodecahedron", "cone-8", "triads-3"}) {
+        auto yardstick = Yardstick::of(geometry::layout(layout).value(), 2);
+        yardstick.mounting_error_rad = 1e-10;
+        const Figures figures = judge(geometry::layout(layout)->axes, yardstick);
+        EXPECT_NEAR(*figures.mounted_trace / figures.worst_after.back().trace, 1, 1e-8) << layout;
+    }
+}
+
+TEST(MountedTrace, is_infinite_where_a_failure_leaves_no_three_directions)
+{
+    geometry::Axes axes(5, 3);
+    axes << 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1;
+    Yardstick yardstick{geometry::AxisVector::Ones(5), {0, 1, 2, 3, 3}, false, 1, 1e-300, 1};
+    EXPECT_EQ(*judge(axes, yardstick).mounted_trace, std::numeric_limits<double>::infinity());
 }
 
 TEST(Search, refines_objectives_without_derivatives_too)
