@@ -1,3 +1,4 @@
+#include "field_scene.hpp"
 #include "quorient/fdi/methods.hpp"
 #include "single_frame/combinations.hpp"
 #include "test_clusters.hpp"
@@ -109,6 +110,74 @@ TEST(RivalsOfTheBareRule, are_not_seen)
         EXPECT_TRUE(has_rival(cluster, z, bare.isolated)) << its.method;
     }
 }
+
+// Methods that compare whole instruments: some of them read the same constant too much. Those that are left are consistent where all of them are
+// faulty alike or all are sound, and where at least two are left.
+
+struct Several {
+    std::string method;
+    std::size_t instruments;
+};
+
+std::vector<Several> several()
+{
+    std::vector<Several> all;
+    for (const Method& method : methods())
+        if (method.input == MethodInput::instruments)
+            for (const std::size_t count : {3, 4, 5}) all.push_back({std::string(method.word), count});
+    return all;
+}
+
+using InstrumentSet = std::uint32_t;
+
+bool explains(InstrumentSet without, InstrumentSet faulty, std::size_t count)
+{
+    const InstrumentSet left = ((InstrumentSet{1} << count) - 1) & ~without;
+    return std::popcount(left) >= 2 && ((left & faulty) == 0 || (left & ~faulty) == 0);
+}
+
+InstrumentSet instruments_of(AxisMask axes)
+{
+    InstrumentSet set = 0;
+    for (std::size_t axis = 0; axis < max_axes; ++axis)
+        if (has_axis(axes, axis)) set |= InstrumentSet{1} << axis / 3;
+    return set;
+}
+
+class RivalInstruments : public testing::TestWithParam<Several> {};
+
+TEST_P(RivalInstruments, are_looked_for_before_an_instrument_is_named)
+{
+    constexpr std::uint64_t seed = 3;
+    constexpr double onset_s = 5, end_s = 8, size_deg_s = 40;
+    const auto [method, count] = GetParam();
+    unsigned named = 0;
+    for (InstrumentSet faulty = 1; faulty + 1 < InstrumentSet{1} << count; ++faulty) {
+        FieldScene scene(count, seed, {.bias_deg_s = 0, .gain = 0, .delay_s = 0, .drift_deg_s = 0, .jitter_s = 0});
+        scene.cluster.sigma.setConstant(0.1 * degree * scene.cluster.interval_s);
+        scene.spoil = [&](std::uint64_t, FieldScene::Rates& rates) {
+            for (std::size_t m = 0; m < count && scene.time_s() >= onset_s; ++m)
+                if (faulty >> m & 1) rates[3 * m] += size_deg_s;
+        };
+        DetectorSettings settings;
+        settings.method = method;
+        const auto detector = make_detector(settings, scene.cluster).value();
+        Assessment assessment;
+        while (scene.time_s() < end_s) {
+            detector->assess(scene.next(), assessment);
+            if (assessment.outcome != Outcome::isolated) continue;
+            ++named;
+            const InstrumentSet own = instruments_of(assessment.isolated);
+            for (InstrumentSet rival = 1; rival < InstrumentSet{1} << count; ++rival)
+                ASSERT_FALSE(rival != own && std::popcount(rival) <= std::popcount(own) && explains(rival, faulty, count))
+                    << "faulty " << faulty << ", named " << own << ", rival " << rival << " at " << scene.time_s() << " s, seed " << seed;
+        }
+    }
+    EXPECT_GT(named, 0U) << "a method that names nobody keeps any promise";
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, RivalInstruments, testing::ValuesIn(several()),
+                         [](const auto& its) { return its.param.method + "_" + std::to_string(its.param.instruments); });
 
 }  // namespace
 
