@@ -119,12 +119,12 @@ def job_csv(page):
              "The user knows `quorient diagnose` from the README.")
     page.write("flight.csv", three_imus())
     page.show("head -3 flight.csv", "quorient diagnose flight.csv")
-    page.say("The report asks for the unit, so it is given.")
-    page.show("quorient diagnose flight.csv --unit deg/s", "quorient diagnose flight.csv --unit deg/s --html flight.html", "quorient diagnose flight.csv --unit deg/s --check > /dev/null")
-    page.say("What would the pipeline have done? `quorient replay --help` asks for a system file; one with three instruments is at hand as `flight.yaml`.")
+    page.say("The message says which names it understands, so the first line is written anew.")
+    page.show("sed -i '1s/.*/time_s,g0x,g0y,g0z,g1x,g1y,g1z,g2x,g2y,g2z/' flight.csv", "quorient diagnose flight.csv", "quorient diagnose flight.csv --unit deg/s",
+              "quorient diagnose flight.csv --unit deg/s --html flight.html > /dev/null && ls flight.html", "quorient diagnose flight.csv --unit deg/s --check > /dev/null")
+    page.say("What would the pipeline have made of it? `quorient replay --help` asks for a system file; `flight.yaml` has three instruments.")
     shutil.copy(CONFIGURATIONS / "flight.yaml", page.folder)
-    page.show("quorient replay --help | head -4", "quorient replay flight.csv --system flight.yaml")
-    page.show("quorient replay flight.csv", "quorient replay flight.cvs --system flight.yaml", "quorient diagnose flight.yaml")
+    page.show("quorient replay flight.csv", "quorient replay flight.cvs --system flight.yaml", "quorient replay flight.csv --system flight.yaml")
 
 
 def job_own_hardware(page):
@@ -183,7 +183,7 @@ def job_ros2(page):
 
 def job_layouts(page):
     page.say("## 4. Comparing two layouts\n\nSix gyros: on a cone, or as a dodecahedron?")
-    page.show("quorient layout | head -12", "quorient layout cone-6 --design", "quorient layout dodecahedron --design")
+    page.show("quorient layout | grep -i -e cone -e dodeca", "quorient layout cone-6 --design | tail -19", "quorient layout dodecahedron --design | tail -19")
     page.show("quorient layout dodecahedrom", "quorient design --axes 6 --explain", "quorient design --axes 5 --isolable 2")
 
 

@@ -175,7 +175,7 @@ TEST_F(DiagnoseVerb, writes_a_page_that_needs_no_network_and_no_script)
 TEST_F(DiagnoseVerb, takes_the_biases_of_a_healthy_log)
 {
     const auto small = [](double, std::size_t gyro, Triad& rate) {
-        if (gyro == 1) rate[1] += 8;
+        if (gyro == 1) rate[1] += 8;  // 5 may be missed in a log that begins at rest (KNOWN_ISSUES.md)
     };
     const std::string healthy = written("healthy.csv", table(3));
     const std::string later = written("later.csv", table(3, small));
