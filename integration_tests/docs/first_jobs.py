@@ -85,8 +85,8 @@ class Page:
         """Waits, unseen, until a command succeeds."""
         deadline = time.monotonic() + DEADLINE_S
         while subprocess.run(["sh", "-c", command], cwd=self.folder, env=self.environment, capture_output=True, check=False).returncode != 0:
-            if time.monotonic() > deadline:
-                raise TimeoutError(command)
+            if time.monotonic() > deadline or all(process.poll() is not None for process in self.started):
+                raise TimeoutError(f"{command} did not succeed while the other windows ran")
             time.sleep(0.1)
 
     def write(self, name, text):

@@ -229,7 +229,9 @@ private:
 
     void tell_death(const launch::Child& child)
     {
-        fmt::print(stderr, "{} ended with exit code {}{}; its log: {}\n", child.name, child.exit_code,
+        constexpr int not_started = 127;
+        if (child.exit_code == not_started) fmt::print(stderr, "{} cannot be started: {} is missing, or no program\n", child.name, child.command.front());
+        else fmt::print(stderr, "{} ended with exit code {}{}; its log: {}\n", child.name, child.exit_code,
                    child.ended ? "" : ", starting it again", child.log_file);
         if (child.ended) {
             failed_ = true;
