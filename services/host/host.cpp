@@ -1,5 +1,6 @@
 #include "host.hpp"
 
+#include "quorient/runtime/heartbeat_owner.hpp"
 #include "quorient/runtime/log.hpp"
 #include "quorient/runtime/realtime.hpp"
 #include "quorient/runtime/signals.hpp"
@@ -23,6 +24,7 @@ int run_role(int argc, char** argv, const Role& role)
     const auto process = role.find(*system, options->name);
     if (!process) return runtime::report(process.error());
 
+    runtime::set_heartbeat_owner({system->name, process->settings.bus.domain, process->settings.node.unit});
     const auto bus = bus::open(process->settings.bus);
     if (!bus) return runtime::report(bus.error());
 

@@ -25,7 +25,7 @@ MonitorService::MonitorService(const system::System& system, Exchange& exchange,
       loop_(loop),
       collector_(system),
       unit_(system.unit),
-      heartbeat_(runtime::Heartbeat::open(system.web_monitor->process.node.heartbeat_owner())),
+      heartbeat_(runtime::Heartbeat::open(system.web_monitor->process.node.name)),
       service_manager_(runtime::ServiceManager::from_environment())
 {
     subscribe(bus, loop);

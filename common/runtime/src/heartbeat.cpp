@@ -1,5 +1,7 @@
 #include "quorient/runtime/heartbeat.hpp"
 
+#include "quorient/runtime/heartbeat_owner.hpp"
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -19,21 +21,38 @@ namespace {
 constexpr const char* extension = ".heartbeat";
 constexpr std::size_t beat_length = 42;  // two numbers of 20 digits, a blank and the line's end
 
-std::filesystem::path file_of(const HeartbeatOwner& owner)
+/// One process is part of one system.
+HeartbeatOwner& owner()
 {
-    return run_directory() / fmt::format("{}.{}.{}{}", owner.service, owner.domain, owner.unit, extension);
+    static HeartbeatOwner of_this_process;
+    return of_this_process;
 }
 
-/// Two lines: the beat, of fixed width and rewritten in place, and whose it is. Names may hold blanks, but no line ends.
-std::optional<Beat> read(const std::filesystem::path& path)
+std::filesystem::path file_of(const std::string& stem)
+{
+    return run_directory() / (stem + extension);
+}
+
+std::string stem_of(const std::string& service)
+{
+    return fmt::format("{}.{}.{}", service, owner().domain, owner().unit);
+}
+
+/// The lines below the beat: domain and unit, service, system. Names may hold blanks, but no line ends.
+std::string signature(const std::string& service)
+{
+    return fmt::format("{} {}\n{}\n{}\n", owner().domain, owner().unit, service, owner().system);
+}
+
+std::optional<Pulse> read_pulse(const std::filesystem::path& path)
 {
     std::ifstream file{path};
-    Beat beat;
-    file >> beat.steady_ns >> beat.frames >> beat.owner.domain >> beat.owner.unit;
+    Pulse pulse;
+    file >> pulse.beat.steady_ns >> pulse.beat.frames >> pulse.owner.domain >> pulse.owner.unit;
     file.ignore();
-    std::getline(file, beat.owner.service);
-    if (!std::getline(file, beat.owner.system)) return std::nullopt;
-    return beat;
+    std::getline(file, pulse.service);
+    if (!std::getline(file, pulse.owner.system)) return std::nullopt;
+    return pulse;
 }
 
 }  // namespace
@@ -44,15 +63,15 @@ std::filesystem::path run_directory()
     return configured ? configured : "/run/quorient";
 }
 
-std::optional<Heartbeat> Heartbeat::open(const HeartbeatOwner& owner)
+std::optional<Heartbeat> Heartbeat::open(const std::string& service)
 {
     std::error_code ignored;  // open() below tells
     std::filesystem::create_directories(run_directory(), ignored);
-    const int file = ::open(file_of(owner).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    const int file = ::open(file_of(stem_of(service)).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     if (file < 0) return std::nullopt;
     Heartbeat heartbeat{file};
     heartbeat.beat(0, 0);
-    const auto whose = fmt::format("{} {}\n{}\n{}\n", owner.domain, owner.unit, owner.service, owner.system);
+    const auto whose = signature(service);
     if (::pwrite(file, whose.data(), whose.size(), beat_length) < 0) return std::nullopt;
     return heartbeat;
 }
@@ -77,16 +96,27 @@ void Heartbeat::beat(std::int64_t steady_ns, std::uint64_t frames)
     if (::pwrite(file_, line.data(), beat_length, 0) < 0) return;  // a full disk must not stop a service
 }
 
-std::vector<Beat> read_heartbeats()
+std::optional<Beat> read_heartbeat(const std::string& service)
 {
-    std::vector<Beat> beats;
+    const auto pulse = read_pulse(file_of(stem_of(service)));
+    return pulse ? std::optional(pulse->beat) : std::nullopt;
+}
+
+void set_heartbeat_owner(HeartbeatOwner of_this_process)
+{
+    owner() = std::move(of_this_process);
+}
+
+std::vector<Pulse> read_pulses()
+{
+    std::vector<Pulse> pulses;
     std::error_code unreadable;
     for (std::filesystem::directory_iterator entry{run_directory(), unreadable}, end; !unreadable && entry != end; entry.increment(unreadable)) {
         if (entry->path().extension() != extension) continue;
-        if (auto beat = read(entry->path())) beats.push_back(std::move(*beat));
+        if (auto pulse = read_pulse(entry->path())) pulses.push_back(std::move(*pulse));
     }
-    std::ranges::sort(beats, {}, [](const Beat& beat) { return std::tie(beat.owner.service, beat.owner.domain, beat.owner.unit); });
-    return beats;
+    std::ranges::sort(pulses, {}, [](const Pulse& pulse) { return std::tie(pulse.service, pulse.owner.domain, pulse.owner.unit); });
+    return pulses;
 }
 
 }  // namespace quorient::runtime

@@ -79,7 +79,7 @@ Node::Node(NodeSettings settings, bus::Bus& bus, EventLoop& loop)
     copy_text(settings_.name, status_.name);
     copy_text(version(), status_.version);
     if (settings_.heartbeat) {
-        heartbeat_ = Heartbeat::open(settings_.heartbeat_owner());
+        heartbeat_ = Heartbeat::open(settings_.name);
         service_manager_ = ServiceManager::from_environment();
         if (!heartbeat_)
             spdlog::warn("{}: no heartbeat file in {}: `quorient health` will not see this service", settings_.name,

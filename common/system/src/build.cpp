@@ -11,8 +11,6 @@ ProcessSettings process_of(const System& system, const ProcessSettings& settings
 {
     ProcessSettings process = settings;
     process.node.name = std::move(name);
-    process.node.system = system.name;
-    process.node.domain = process.bus.domain;
     process.node.unit = system.unit;
     process.node.service = system.unit * services_per_unit + service;
     process.node.role = role;

@@ -1,6 +1,6 @@
 #include "quorient/bus/settings.hpp"
 #include "quorient/runtime/clock.hpp"
-#include "quorient/runtime/heartbeat.hpp"
+#include "quorient/runtime/heartbeat_owner.hpp"
 #include "quorient/system/numbers.hpp"
 #include "verbs.hpp"
 
@@ -22,26 +22,26 @@ struct HealthOptions {
     double fresh_s = 1;
 };
 
-std::string described(const runtime::HeartbeatOwner& owner)
+std::string described(const runtime::Pulse& pulse)
 {
-    return fmt::format("{} of '{}', domain {}, unit {}", owner.service, owner.system, owner.domain, owner.unit);
+    return fmt::format("{} of '{}', domain {}, unit {}", pulse.service, pulse.owner.system, pulse.owner.domain, pulse.owner.unit);
 }
 
-std::string described(const std::vector<runtime::Beat>& beats)
+std::string described(const std::vector<runtime::Pulse>& pulses)
 {
     std::vector<std::string> all;
-    for (const auto& beat : beats) all.push_back(described(beat.owner));
+    for (const auto& pulse : pulses) all.push_back(described(pulse));
     return fmt::format("{}", fmt::join(all, "; "));
 }
 
 /// @throws Exit where there is none, or more than one: an answer for another system's process would be worse than none.
-runtime::Beat only_one(const HealthOptions& options)
+runtime::Pulse only_one(const HealthOptions& options)
 {
-    const auto all = runtime::read_heartbeats();
+    const auto all = runtime::read_pulses();
     auto asked_for = all;
-    std::erase_if(asked_for, [&](const runtime::Beat& beat) {
-        return beat.owner.service != options.name || (options.domain && beat.owner.domain != *options.domain) ||
-               (options.unit && beat.owner.unit != *options.unit);
+    std::erase_if(asked_for, [&](const runtime::Pulse& pulse) {
+        return pulse.service != options.name || (options.domain && pulse.owner.domain != *options.domain) ||
+               (options.unit && pulse.owner.unit != *options.unit);
     });
     if (asked_for.size() > 1) fail(fmt::format("{}: several processes have this name: {}. Choose one by --domain and --unit", options.name, described(asked_for)));
     if (asked_for.size() == 1) return asked_for.front();
@@ -54,13 +54,14 @@ runtime::Beat only_one(const HealthOptions& options)
 
 int health(const HealthOptions& options)
 {
-    const auto beat = only_one(options);
+    const auto pulse = only_one(options);
+    const auto& beat = pulse.beat;
     if (beat.frames == 0) {
-        fmt::print("{}: has handled no frame yet\n", described(beat.owner));
+        fmt::print("{}: has handled no frame yet\n", described(pulse));
         return ExitCode::not_as_asked;
     }
     const double age_s = static_cast<double>(runtime::SystemClock{}.steady_ns() - beat.steady_ns) * 1e-9;
-    fmt::print("{}: {} frames, the latest {:.3f} s ago\n", described(beat.owner), beat.frames, age_s);
+    fmt::print("{}: {} frames, the latest {:.3f} s ago\n", described(pulse), beat.frames, age_s);
     return age_s <= options.fresh_s ? ExitCode::done : ExitCode::not_as_asked;
 }
 

@@ -27,11 +27,9 @@ struct OrderSettings {
     bool reset = true;
 };
 
-/// Which process it is.
+/// Who a process is.
 struct NodeSettings {
     std::string name;
-    std::string system;        ///< the system file's `name`
-    std::uint32_t domain = 0;  ///< of DDS
     std::uint32_t unit = 0;
     std::uint32_t service = 0;  ///< unique in the domain
     ServiceRole role = ServiceRole::unknown;
@@ -40,8 +38,6 @@ struct NodeSettings {
     bool log_events = true;  ///< also to stderr
     OrderSettings orders;
     std::int64_t identity_expires_ns = 0;  ///< when its certificate expires, since 1970; 0 = no certificate
-
-    HeartbeatOwner heartbeat_owner() const { return {name, system, domain, unit}; }
 };
 
 /// What every service does beside its work: tells its events and its status, leaves its heartbeat, watches its endpoints.
