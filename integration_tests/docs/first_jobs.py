@@ -10,6 +10,7 @@ import platform
 import random
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -91,6 +92,15 @@ class Page:
 
     def write(self, name, text):
         (self.folder / name).write_text(text)
+
+    def kill(self, launch, name):
+        """Ends one process of a running launch, as a crash would."""
+        children = pathlib.Path(f"/proc/{launch.pid}/task/{launch.pid}/children").read_text().split()
+        for child in children:
+            if f"--name\0{name}\0" in pathlib.Path(f"/proc/{child}/cmdline").read_text():
+                os.kill(int(child), signal.SIGKILL)
+                return self.say(f"Somebody kills `{name}` (SIGKILL).")
+        raise ProcessLookupError(name)
 
     def stop(self):
         for process in self.started:
@@ -190,14 +200,16 @@ def job_layouts(page):
 def job_demo(page):
     page.say("## 5. Watching and disturbing the demo\n\nThe demo for two minutes, without its own fault.")
     shutil.copy(CONFIGURATIONS / "demo.yaml", page.folder)
-    with page.beside("quorient launch demo.yaml --set source.duration_s=120 --set source.faults=[] --set expect=null --duration 45"):
+    with page.beside("quorient launch demo.yaml --set source.duration_s=120 --set source.faults=[] --set expect=null --duration 45") as launch:
         page.until("quorient health voter-1")
         page.show("quorient status", "quorient inject axis=1,kind=scale,value=0.8", "sleep 1; quorient status | head -1")
         page.show("quorient readmit --axis 1", "quorient inject --clear", "sleep 1; quorient readmit --axis 1", "sleep 1; quorient status | head -1")
         page.show("quorient inject axis=G2,kind=tired", "quorient inject axis=9,kind=zero", "quorient injekt axis=1,kind=zero", "quorient status --unit 7 --seconds 1",
                   "quorient status --domain 43 --seconds 1")
         page.show("quorient launch demo.yaml --duration 5", "quorient record flight.csv --duration 2", "quorient record flight.csv --duration 2", "quorient health voter-1", "quorient health voter-3",
-                  "quorient health voter-1 --domain 43", "pkill -n -f 'quorient-voter.*voter-1' ; sleep 2; quorient status | head -1")
+                  "quorient health voter-1 --domain 43")
+        page.kill(launch, "voter-1")
+        page.show("sleep 2; quorient status | head -1", "quorient health voter-1")
     page.show("quorient replay flight.csv --system demo.yaml --set expect=null", "quorient status --seconds 1", "quorient clean --dry-run; echo")
 
 
