@@ -50,6 +50,15 @@ bool as_expected(const system::System& system, const evaluation::RunObserver& ru
     return true;
 }
 
+/// A publisher of the user's own sends frames without their truth: there is nothing to compare them with.
+std::string summary_without_truth(const system::System& system, const evaluation::RunObserver& run)
+{
+    std::string text = fmt::format("{}: no truth was published, so neither faults nor errors nor missing frames are known\n", system.name);
+    for (const auto& lane : run.lanes())
+        text += fmt::format("lane {:<4}{:<11}{} frames, {}\n", lane.name, bus::to_string(lane.vendor), lane.frames, isolation_text(run, lane));
+    return text + fmt::format("voted    {} frames, level {}\n", run.voted().frames, to_string(level_of(run.voted().latest)));
+}
+
 nlohmann::ordered_json errors_json(const evaluation::Errors& errors)
 {
     if (errors.compared == 0) return {{"compared", 0}, {"max_error_rad", nullptr}, {"final_error_rad", nullptr}};
@@ -61,6 +70,7 @@ nlohmann::ordered_json errors_json(const evaluation::Errors& errors)
 std::string summary_text(const system::System& system, const evaluation::RunObserver& run)
 {
     if (system.integrators().empty()) return vessel_text(system, run);
+    if (run.truth_frames() == 0) return summary_without_truth(system, run);
     std::string text = fmt::format("{}: {} frames\n", system.name, run.truth_frames());
     if (run.fault_began())
         text += fmt::format("fault    {} from {:.3f} s{}\n", run.names_of(run.faulty()), run.time_s(*run.fault_began()),
