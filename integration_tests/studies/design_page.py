@@ -1,6 +1,6 @@
 """The designer's results as a page: the study's tables and picture, and the 24-gyro array of the recordings grown and shrunk.
 
-usage: QUORIENT_BIN=build/release/bin python3 -m integration_tests.studies.design_page > integration_tests/studies/results/design.md
+usage: QUORIENT_BIN=build/release/bin python3 -m integration_tests.studies.design_page > integration_tests/studies/results/array_design.md
 """
 import os
 import pathlib
