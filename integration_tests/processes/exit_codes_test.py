@@ -69,7 +69,7 @@ WRITING = {
 PRINTS_NOTHING = ("record", "clean")  # on standard output; nothing is left to clean in these tests
 CODES = {"done": DONE, "not as asked": NOT_AS_ASKED, "bad usage": REFUSED, "bad input": REFUSED, "nothing to do": REFUSED, "file exists": REFUSED,
          "disk full": REFUSED, "read-only disk": REFUSED, "output full": REFUSED, "output closed": REFUSED}
-SPEAKS_ON_STDOUT = {("assess", "not as asked")}  # its rows say which outcome they have
+SPEAKS_ON_STDOUT = {("assess", "not as asked"), ("inject", "not as asked"), ("readmit", "not as asked")}  # rows, and the answers of services
 
 LIVE_SYSTEM = """
 unit: {{layout: dodecahedron}}
