@@ -63,7 +63,7 @@ class NodeModules:
 class RecordTest(ProcessTest):
     def setUp(self):
         super().setUp()
-        self.start("quorient", "launch", DEMO, "--domain", self.domain, "--json", "--set", "source.duration_s=120", "--set", "expect=null")
+        self.start("quorient", "launch", DEMO, "--domain", self.domain, "--json", "--set", "source.duration_s=120", "--set", "source.faults=[]", "--set", "expect=null")
         self.eventually(lambda: self.run_program("quorient", "health", "voter-1").returncode == 0, "the pipeline runs")
 
     def path(self, name):
@@ -125,7 +125,8 @@ class ReadByOthers(RecordTest):
         whole = self.replay("flight.mcap")
         self.assertEqual(whole["frames"], counts["quorient/frame"])
         self.assertEqual(whole["isolations"], [])
-        self.assertLess(whole["attitude"]["max_error_rad"], 1e-3, "against the truth in the file")
+        if "never arrived" not in told:
+            self.assertLess(whole["attitude"]["max_error_rad"], 1e-5, "against the truth in the file")
         for kind in ("none", "unchunked", "lz4"):
             with self.subTest(rewritten=kind):
                 self.node("rewrite_record.mjs", self.path("flight.mcap"), self.path(f"{kind}.mcap"), kind)
