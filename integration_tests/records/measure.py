@@ -58,6 +58,8 @@ def kill(folder, number, after_s):
     """@returns the frames that replay reads, and how long before the kill the last sample was received [s]."""
     file = folder / f"killed_{number}.mcap"
     process = subprocess.Popen(command("record", file, "--domain", DOMAIN), stderr=subprocess.DEVNULL)
+    while not file.exists():  # it is made with the first sample
+        time.sleep(0.01)
     time.sleep(after_s)
     killed_ns = time.time_ns()
     process.kill()

@@ -126,6 +126,7 @@ std::uint16_t Writer::add_channel(std::string_view topic, std::string_view messa
 
 void Writer::add(std::uint16_t channel, std::uint64_t log_time_ns, std::span<const std::uint8_t> data)
 {
+    if (state_->ready.size() > 0) state_->write();  // schemas and channels, before the first message
     Count& count = state_->counts.at(channel);
     state_->chunk.add({channel, log_time_ns, data}, static_cast<std::uint32_t>(count.written + count.added));
     ++count.added;
