@@ -102,7 +102,7 @@ void Narrator::epoch(Identity identity, std::uint64_t before)
 void Narrator::away(Identity identity, double delay_s)
 {
     VoterEvent& event = add(EventCode::rejected_input, Severity::warning_high, identity);
-    write(event.text, "this voter did not run for %.3f s, its lease or nearly so: its queue is discarded, it starts over", delay_s);
+    write(event.text, "this voter did not run for %.3f s, its lease or nearly so: it listens, then gives out what no other voter has", delay_s);
 }
 
 VoterEvent& Narrator::add(EventCode code, Severity severity, Identity identity)

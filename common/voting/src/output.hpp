@@ -71,7 +71,7 @@ private:
     Narrator& narrator_;                        ///< Reports changes of primary and level.
     VoterCounters& counters_;                   ///< Counts what is published, gaps and changes of primary.
     Continuity continuity_;                     ///< The newest frame of the stream, own or adopted; last_ is the same frame.
-    BoundedQueue<VotedAttitude, 128> outputs_;  ///< Outputs in order that next() hands out.
+    BoundedQueue<VotedAttitude, longest_burst> outputs_;  ///< Outputs in order that next() hands out.
     LaneIndex primary_ = 0;                     ///< Whose attitude is the output. Means nothing before the first output.
     std::array<std::uint64_t, 8> changes_{};    ///< Values of counters_.published at the latest changes of primary.
     VotedAttitude last_;                        ///< The newest frame's output, own or adopted; what coasting repeats.

@@ -59,8 +59,8 @@ private:
     std::int64_t lease_ns_;                   ///< The right returns so long after an absence at the earliest.
     unsigned good_frames_required_;           ///< Good frames until the right to write.
     unsigned listen_frames_;                  ///< Good frames after which an unseen stronger voter is taken to be absent.
-    BoundedQueue<Waiting, 128> waiting_;      ///< Outputs in order that are neither written nor passed over yet.
-    BoundedQueue<VotedAttitude, 128> ready_;  ///< Outputs in order that next() hands out.
+    BoundedQueue<Waiting, longest_burst> waiting_;      ///< Outputs in order that are neither written nor passed over yet.
+    BoundedQueue<VotedAttitude, longest_burst> ready_;  ///< Outputs in order that next() hands out.
     Right right_ = Right::proving;            ///< Changed by consider_right(), must_hold() and start_over() alone.
     unsigned good_frames_ = 0;                ///< Own frames since the start or the last absence.
     unsigned listened_ = 0;                   ///< Own frames since the start.

@@ -9,8 +9,12 @@
 
 namespace quorient::voting {
 
-/// Frames that are remembered; also the farthest that a lane may run ahead of the others, times two.
-inline constexpr std::uint64_t frame_window = 64;
+/// Frames that are remembered; also the farthest that a lane may run ahead of the others, times two. After an absence a voter finds 64
+/// frames in its readers' queues and listens for a lease (50 frames at 1 kHz): all of them are published late, if nobody else has.
+inline constexpr std::uint64_t frame_window = 128;
+
+/// Outputs that one call may make: all frames that are remembered, and repetitions.
+inline constexpr std::size_t longest_burst = 192;
 
 /// Which frames exist, which are published, and when each one is due.
 ///
