@@ -1,4 +1,4 @@
-#include "refused_endpoint.hpp"
+#include "../src/refused_endpoint.hpp"
 
 #include <gtest/gtest.h>
 
