@@ -130,7 +130,7 @@ private:
         bus::Settings settings;
         settings.vendor = *bus::vendor_from(options_.dds);
         settings.domain = options_.domain;
-        settings.participant = (options_.name.empty() ? "rogue" : options_.name) + " on " + options_.dds;
+        settings.participant = options_.name.empty() ? "rogue" : options_.name;
         if (options_.keys.empty()) return settings;
         const security::Layout keys{std::filesystem::absolute(options_.keys)};
         const auto& name = options_.name;

@@ -1,10 +1,10 @@
-"""Three rogue nodes on each vendor and a twin that is admitted. All cases: `python3 -m integration_tests.security.run_rogues`."""
+"""Two rogue nodes on each vendor and a twin that is admitted. All cases: `python3 -m integration_tests.security.run_rogues`."""
 import unittest
 
 from integration_tests.security.rogues import CASES
 from integration_tests.security.run_rogues import outcomes
 
-SHORT = ("no certificate", "the same, its DDS patched to permit it", "a monitor sends orders", "twin: a second sensor of the system")
+SHORT = ("no certificate", "the same, its DDS patched to permit it", "twin: a second sensor of the system")
 
 
 class Rogues(unittest.TestCase):
