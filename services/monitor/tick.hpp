@@ -38,6 +38,7 @@ struct Range {
     }
     void add(const Range& other)
     {
+        if (other.empty()) return;
         add(other.lowest);
         add(other.highest);
     }

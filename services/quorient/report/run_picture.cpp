@@ -93,7 +93,7 @@ private:
     Strip error_strip() const
     {
         std::vector<Band> bands;
-        auto without = band("had suspects been kept until isolated, without going back", cli::colour(1), [](const RunMoment& m) { return m.without_rollback_rad; });
+        auto without = band("without going back to the onset", cli::colour(1), [](const RunMoment& m) { return m.without_rollback_rad; });
         if (!without.points.empty()) bands.push_back(std::move(without));
         bands.push_back(band("voted attitude", cli::colour(0), [](const RunMoment& m) { return m.error_rad; }));
         return cli::band_strip("Attitude error against the truth", "rad", span_, bands, {cli::Spacing::logarithmic});

@@ -25,6 +25,7 @@ struct Extent {
     }
     void add(const Extent& other)
     {
+        if (other.empty()) return;
         add(other.least);
         add(other.largest);
     }
