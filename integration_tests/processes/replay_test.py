@@ -1,4 +1,5 @@
 """quorient replay: the whole system offline, the same bytes on every run."""
+import csv
 import itertools
 import math
 import pathlib
@@ -44,9 +45,12 @@ class SimulatedLog(ProcessTest):
         return self.write("log.csv", result.stdout)
 
     def replay(self, log, *arguments):
-        result = self.run_program("quorient", "replay", log, "--system", CONFIGURATIONS / "demo.yaml", "--json", *arguments)
+        result = self.replayed(log, "--set", "expect=null", *arguments)
         self.assertEqual(result.returncode, 0, result.stderr)
         return result.stdout
+
+    def replayed(self, log, *arguments):
+        return self.run_program("quorient", "replay", log, "--system", CONFIGURATIONS / "demo.yaml", "--json", *arguments)
 
     def test_gives_the_same_bytes_on_every_run(self):
         log = self.simulate()
@@ -93,6 +97,60 @@ class SimulatedLog(ProcessTest):
         self.assertEqual(report["false_isolations"], [], "the log was not said to be without faults")
         report = exact_json.loads(self.replay(log, "--fault", "axis=2,kind=bias,value=0.02,start=9"))
         self.assertLessEqual({"a", "b"}, {entry["lane"] for entry in report["false_isolations"] if entry["axes"] == [0]})
+
+    def test_ends_with_1_where_the_files_expectations_are_not_met(self):
+        healthy = self.simulate()
+        result = self.replayed(healthy, "--set", "expect={isolated: [2]}")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("not as expected: lane a isolated no axis", result.stderr)
+        self.assertTrue(json.loads(result.stdout)["unmet"])
+        met = self.replayed(healthy, "--set", "expect={isolated: []}")
+        self.assertEqual((met.returncode, met.stderr), (0, ""))
+        self.assertEqual(json.loads(met.stdout)["unmet"], [])
+
+    def test_expects_a_fault_that_only_the_log_knows(self):
+        log = self.simulate("--fault", "axis=2,kind=bias,value=0.02,start=4")
+        self.assertEqual(self.replayed(log, "--set", "expect={isolated: [2]}").returncode, 0)
+        self.assertEqual(self.replayed(log, "--set", "expect={isolated: [1]}").returncode, 1)
+
+    def test_writes_every_verdict_and_every_event(self):
+        log = self.simulate("--fault", "axis=2,kind=bias,value=0.02,start=4")
+        verdicts, events = (self.write(name, "") for name in ("verdicts.csv", "events.jsonl"))
+        report = json.loads(self.replay(log, "--verdicts", verdicts, "--events", events, "--force"))
+        with open(verdicts, newline="") as file:
+            rows = list(csv.DictReader(file))
+        lanes = {row["lane"] for row in rows}
+        self.assertEqual(lanes, set(report["undecided_s"]))
+        self.assertEqual(len(rows), len(lanes) * report["frames"])
+        first = next(row for row in rows if row["lane"] == "a" and row["isolated"] == "2")
+        isolated_s = next(entry["time_s"] for entry in report["isolations"] if entry["lane"] == "a")
+        self.assertAlmostEqual(float(first["time_s"]), isolated_s)
+        self.assertTrue(all(row["isolated"] == "" for row in rows if float(row["time_s"]) < 4))
+        told = [json.loads(line) for line in pathlib.Path(events).read_text().splitlines()]
+        isolated = [event for event in told if event["code"] == "ISOLATED" and event["axes"] == [2]]
+        self.assertTrue(isolated)
+        self.assertAlmostEqual(isolated[0]["time_s"], 4, delta=0.1)
+
+    def test_lists_the_spells_in_which_nobody_was_blamed_for_good(self):
+        log = self.simulate("--fault", "axis=2,kind=bias,value=0.02,start=4")
+        report = json.loads(self.replay(log))
+        for spell in report["undecided"]:
+            self.assertGreaterEqual(spell["from_s"], 4)
+        self.assertEqual({spell["lane"] for spell in report["undecided"]}, {lane for lane, states in report["undecided_s"].items() if states})
+        self.assertEqual(json.loads(self.replay(self.simulate()))["undecided"], [])
+
+    def test_replays_raw_counts_with_their_scale(self):
+        rows = [f"{10 * i},{i % 5},{i % 7},{i % 3},{i % 5},{i % 7},{i % 3},{i % 5},{i % 7},{i % 3}" for i in range(1000)]
+        log = self.write("counts.csv", "time_ms,g0x,g0y,g0z,g1x,g1y,g1z,g2x,g2y,g2z\n" + "\n".join(rows) + "\n")
+        system = self.write("three.yaml", "name: three\nunit: {id: 1}\nsource: {kind: log, file: named by the command}\n"
+                                          "lanes: [{name: a, detector: {method: field}}]\nvoters: [{name: voter-1}]\n")
+        command = ("quorient", "replay", log, "--system", system, "--json")
+        refused = self.run_program(*command)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("--lsb-per-deg-s", refused.stderr)
+        result = self.run_program(*command, "--lsb-per-deg-s", 16.4)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("source.rate_hz is 62.5, and the log has 100 frames a second", json.loads(result.stdout)["log"])
 
     def test_refuses_a_log_that_is_not_there(self):
         result = self.run_program("quorient", "replay", "nosuch.csv", "--system", CONFIGURATIONS / "demo.yaml")

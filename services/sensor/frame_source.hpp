@@ -4,6 +4,7 @@
 #include "quorient/messages/codes.hpp"
 #include "quorient/messages/sensor_frame.hpp"
 #include "quorient/messages/truth_state.hpp"
+#include "quorient/recording/instrument_log.hpp"
 #include "quorient/runtime/event_loop.hpp"
 #include "quorient/simulation/faults.hpp"
 #include "quorient/system/system.hpp"
@@ -50,7 +51,9 @@ public:
     virtual std::string remarks() const { return {}; }
 };
 
+/// @param log  what a table does not say itself
 /// @returns an error for a log that cannot be read, moves while it should rest.
-tl::expected<std::unique_ptr<FrameSource>, std::string> make_source(const system::SensorSettings& settings, std::uint64_t epoch);
+tl::expected<std::unique_ptr<FrameSource>, std::string> make_source(const system::SensorSettings& settings, std::uint64_t epoch,
+                                                                    const recording::LogOptions& log = {});
 
 }  // namespace quorient::sensor

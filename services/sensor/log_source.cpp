@@ -10,9 +10,11 @@
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <vector>
 
 namespace quorient::sensor {
 
@@ -31,30 +33,43 @@ const std::string& name_of(const system::SensorSettings& settings)
     return settings.source.log->files.front();
 }
 
-tl::expected<std::unique_ptr<recording::Reader>, std::string> open(const system::SensorSettings& settings)
+tl::expected<recording::MergedLogs, std::string> open(const system::SensorSettings& settings, const recording::LogOptions& options)
 {
     const std::vector<std::filesystem::path> files(settings.source.log->files.begin(), settings.source.log->files.end());
-    auto merged = recording::open_logs(files);
-    if (!merged) return tl::make_unexpected(merged.error());
-    return std::move(merged->reader);
+    return recording::open_logs(files, options);
+}
+
+/// The file's rate against the log's own time stamps.
+std::optional<std::string> doubted_rate(double logged_hz, double stated_hz)
+{
+    constexpr double tolerance = 0.1;
+    if (std::abs(stated_hz / logged_hz - 1) <= tolerance) return std::nullopt;
+    return fmt::format("source.rate_hz is {:.4g}, and the log has {:.4g} frames a second by its own time stamps", stated_hz, logged_hz);
 }
 
 class LogSource final : public FrameSource {
 public:
-    LogSource(std::unique_ptr<recording::Reader> reader, const geometry::SensorCluster& cluster, const ClusterDescription& description,
+    LogSource(recording::MergedLogs logs, const geometry::SensorCluster& cluster, const ClusterDescription& description,
               const system::SensorSettings& settings)
-        : reader_(std::move(reader)),
+        : reader_(std::move(logs.reader)),
           description_(description),
           faults_(cluster, settings.source.scenario.seed),
           gain_(gains(settings)),
           from_s_(settings.source.log->from_s),
           to_s_(settings.source.log->to_s.value_or(std::numeric_limits<double>::infinity()))
     {
+        if (auto doubt = doubted_rate(1 / reader_->description().interval_s, 1 / settings.source.scenario.interval_s)) remarks_.push_back(std::move(*doubt));
+        remarks_.insert(remarks_.end(), logs.remarks.begin(), logs.remarks.end());
     }
 
     const ClusterDescription& description() const override { return description_; }
     simulation::FaultInjector& faults() override { return faults_; }
-    std::string remarks() const override { return recording::summary(reader_->statistics()); }
+    std::string remarks() const override
+    {
+        std::string text = recording::summary(reader_->statistics());
+        for (const std::string& remark : remarks_) text += "; " + remark;
+        return text;
+    }
 
     Advance advance_to(std::uint64_t sequence, SensorFrame& frame, TruthState& truth) override
     {
@@ -111,6 +126,7 @@ private:
     }
 
     std::unique_ptr<recording::Reader> reader_;
+    std::vector<std::string> remarks_;  ///< on how the log was understood
     ClusterDescription description_;
     simulation::FaultInjector faults_;
     simulation::FrameAccumulator accumulator_;
@@ -204,11 +220,10 @@ tl::expected<ClusterDescription, std::string> describe_log(recording::Reader& re
 
 /// Where a log with truth begins: its first truth is that at the *end* of the first interval, so the first rotation is taken back.
 /// Exact but for the coning within one interval and the first frame's quantisation.
-std::optional<std::array<double, 4>> attitude_at_start(const system::SensorSettings& settings, const geometry::SensorCluster& cluster)
+std::optional<std::array<double, 4>> attitude_at_start(recording::Reader& reader, const geometry::SensorCluster& cluster)
 {
-    auto reader = open(settings);
     recording::RecordedFrame first;
-    if (!reader || (*reader)->next(first) != recording::ReadOutcome::frame || !first.truth) return std::nullopt;
+    if (reader.next(first) != recording::ReadOutcome::frame || !first.truth) return std::nullopt;
     const geometry::AxisVector increment = Eigen::Map<const Eigen::VectorXd>(first.increment.data(), cluster.axes.rows());
     const Eigen::Vector3d rotation = (cluster.axes.transpose() * cluster.axes).ldlt().solve(cluster.axes.transpose() * increment);
     return attitude::to_array(attitude::from_array(*first.truth) * attitude::from_rotation_vector(-rotation));
@@ -216,30 +231,32 @@ std::optional<std::array<double, 4>> attitude_at_start(const system::SensorSetti
 
 }  // namespace
 
-tl::expected<std::unique_ptr<FrameSource>, std::string> make_log_source(const system::SensorSettings& settings, std::uint64_t epoch)
+tl::expected<std::unique_ptr<FrameSource>, std::string> make_log_source(const system::SensorSettings& settings, std::uint64_t epoch, const recording::LogOptions& options)
 {
-    auto beginning = open(settings);
+    auto beginning = open(settings, options);
     if (!beginning) return tl::make_unexpected(beginning.error());
-    auto description = describe_log(**beginning, settings, epoch);
+    auto description = describe_log(*beginning->reader, settings, epoch);
     if (!description) return tl::make_unexpected(description.error());
     const auto cluster = geometry::make_cluster(*description);
     if (!cluster) return tl::make_unexpected(fmt::format("{}: {}", name_of(settings), cluster.error()));
-    if (const auto start = attitude_at_start(settings, *cluster); start && description->initial_attitude_known == 0) {
+    auto again = open(settings, options);
+    if (!again) return tl::make_unexpected(again.error());
+    if (const auto start = attitude_at_start(*again->reader, *cluster); start && description->initial_attitude_known == 0) {
         state_attitude(*description, *start, InitialAttitude::measured);
     }
 
-    auto reader = open(settings);
-    if (!reader) return tl::make_unexpected(reader.error());
-    auto source = std::make_unique<LogSource>(std::move(*reader), *cluster, *description, settings);
+    auto logs = open(settings, options);
+    if (!logs) return tl::make_unexpected(logs.error());
+    auto source = std::make_unique<LogSource>(std::move(*logs), *cluster, *description, settings);
     for (const auto& fault : settings.source.scenario.faults) {
         if (const auto added = source->faults().add(fault); !added) return tl::make_unexpected(added.error());
     }
     return source;
 }
 
-tl::expected<std::unique_ptr<FrameSource>, std::string> make_source(const system::SensorSettings& settings, std::uint64_t epoch)
+tl::expected<std::unique_ptr<FrameSource>, std::string> make_source(const system::SensorSettings& settings, std::uint64_t epoch, const recording::LogOptions& log)
 {
-    if (settings.source.log) return make_log_source(settings, epoch);
+    if (settings.source.log) return make_log_source(settings, epoch, log);
     if (settings.source.ros2) return make_ros2_source(settings, epoch);
     if (settings.source.vessel) return make_vessel_source(settings, epoch);
     return make_simulation_source(settings, epoch);

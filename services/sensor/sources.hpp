@@ -11,6 +11,7 @@ std::unique_ptr<FrameSource> make_vessel_source(const system::SensorSettings& se
 
 std::unique_ptr<FrameSource> make_ros2_source(const system::SensorSettings& settings, std::uint64_t epoch);
 
-tl::expected<std::unique_ptr<FrameSource>, std::string> make_log_source(const system::SensorSettings& settings, std::uint64_t epoch);
+tl::expected<std::unique_ptr<FrameSource>, std::string> make_log_source(const system::SensorSettings& settings, std::uint64_t epoch,
+                                                                        const recording::LogOptions& options);
 
 }  // namespace quorient::sensor

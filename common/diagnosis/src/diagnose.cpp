@@ -10,6 +10,7 @@
 #include "watch.hpp"
 #include "words.hpp"
 
+#include "quorient/diagnosis/words.hpp"
 #include "quorient/fdi/methods.hpp"
 
 #include <fmt/format.h>
@@ -71,7 +72,8 @@ public:
     {
         for (const recording::SurveyedLog& log : survey.logs) {
             report_.log += (report_.log.empty() ? "" : ", ") + log.name;
-            report_.remarks.insert(report_.remarks.end(), log.remarks.begin(), log.remarks.end());
+            for (const std::string& remark : log.remarks) report_.remarks.push_back(placed(remark, log));
+            if (!log.problems.empty()) report_.remarks.push_back(refused(log));
         }
         report_.remarks.insert(report_.remarks.end(), survey.remarks.begin(), survey.remarks.end());
         report_.mount = mount_of(survey, options);
@@ -94,13 +96,35 @@ public:
     }
 
 private:
+    /// What was assumed alike of all logs is said once; else it goes with the log's name.
+    std::string placed(const std::string& remark, const recording::SurveyedLog& log) const
+    {
+        const auto head_of = [](const std::string& text) { return text.substr(0, text.find(", since")); };
+        const auto says_it = [&](const recording::SurveyedLog& other) {
+            return std::any_of(other.remarks.begin(), other.remarks.end(), [&](const std::string& its) { return head_of(its) == head_of(remark); });
+        };
+        if (!std::all_of(survey_.logs.begin(), survey_.logs.end(), says_it)) return log.name + ": " + remark;
+        for (const std::string& first : survey_.logs.front().remarks)
+            if (head_of(first) == head_of(remark)) return first;
+        return remark;
+    }
+
+    static std::string refused(const recording::SurveyedLog& log)
+    {
+        return fmt::format("{} refused; the first: {}", counted(log.refused, "record"), log.problems.front());
+    }
+
     InstrumentFacts& facts_of(std::size_t m) { return report_.instruments[survey_.compared[m]]; }
 
     void look()
     {
         report_.coverage = survey_.compared.empty() ? 0 : 1;
         for (std::size_t m = 0; m < instruments_.size(); ++m) report_.coverage = std::min(report_.coverage, instruments_[m].figures.coverage);
-        if (!instruments_.empty()) frames_.each([&](const recording::AlignedFrame& frame) { overview_.add(frame); });
+        if (!instruments_.empty())
+            frames_.each([&](const recording::AlignedFrame& frame) {
+                if (frame.after_gap && overview_.frames() > 0) report_.holes.push_back({overview_.last_s(), begin_of(frame)});
+                overview_.add(frame);
+            });
         overview_.finish();
         report_.duration_s = overview_.last_s() - overview_.first_s();
         if (instruments_.empty())

@@ -2,6 +2,8 @@
 
 #include "rates.hpp"
 
+#include "quorient/diagnosis/words.hpp"
+
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>

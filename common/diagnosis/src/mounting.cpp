@@ -2,6 +2,8 @@
 
 #include "rates.hpp"
 
+#include "quorient/diagnosis/words.hpp"
+
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <fmt/format.h>

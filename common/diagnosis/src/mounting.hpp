@@ -31,7 +31,4 @@ Mountings find_mountings(const Overview& overview, const std::vector<recording::
 /// By the log's own statement: takes the instrument's components to those of the body.
 Eigen::Matrix3d nominal_mounting(const recording::Instrument& instrument);
 
-/// "90 degrees about z": the turn, in words. @param turn  a rotation
-std::string words_of_turn(const Eigen::Matrix3d& turn);
-
 }  // namespace quorient::diagnosis

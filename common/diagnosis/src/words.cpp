@@ -37,27 +37,40 @@ constexpr double at_once_s = 1.5;  // a fault from the first second on
 std::string sized(double size, double uncertainty, int digits)
 {
     if (!std::isfinite(uncertainty) || uncertainty <= 0) return fmt::format("{:.{}f}", size, digits);
-    return fmt::format("{:.{}f} +- {:.{}f}", size, digits, uncertainty, digits);
+    const double least = std::pow(10.0, -digits);  // what is more certain than the digits show is not called exact
+    return fmt::format("{:.{}f} +- {:.{}f}", size, digits, std::max(uncertainty, least), digits);
+}
+
+/// "10.7 +- 0.1 deg/s too little"
+std::string too_much(double bias_deg_s, double uncertainty)
+{
+    return fmt::format("{} deg/s too {}", sized(std::abs(bias_deg_s), uncertainty, 1), bias_deg_s < 0 ? "little" : "much");
+}
+
+/// Instruments contradict each other, and none is to blame.
+bool is_disagreement(const Finding& finding)
+{
+    return !finding.instrument && finding.kind == Kind::bias;
 }
 
 std::string deg_s(const Finding& finding, std::string_view unsized)
 {
     if (!std::isfinite(finding.size)) return std::string(unsized);
-    return "reads " + sized(finding.size, finding.uncertainty, 1) + " deg/s too much";
+    return "reads " + too_much(finding.size, finding.uncertainty);
 }
 
 std::string size_words(const Finding& finding)
 {
     const bool known = std::isfinite(finding.size);
     switch (finding.kind) {
-        case Kind::bias: return deg_s(finding, finding.instrument ? "contradicts the others" : "they disagree");
+        case Kind::bias: return deg_s(finding, finding.instrument ? "contradicts the others" : "disagree");
         case Kind::outside_class: return deg_s(finding, "contradicts the others") + ", more than sound sensors of its class differ by";
         case Kind::gain: return "shows " + sized(finding.size, finding.uncertainty, 2) + " of the true rate";
         case Kind::sign: return "has the wrong sign";
         case Kind::delay: return known ? "is late by " + sized(finding.size * 1e3, finding.uncertainty * 1e3, 1) + " ms" : "is late";
         case Kind::stuck: return "is stuck at one value";
         case Kind::zero: return "is stuck at 0";
-        case Kind::saturated: return finding.instrument ? "is at its range" : "all are at their range: the attitude cannot be trusted from there on";
+        case Kind::saturated: return finding.instrument ? "is at its range" : "are at their range together (the attitude cannot be trusted from there on)";
         case Kind::noise: return known ? fmt::format("has {:.0f} times its usual noise", finding.size) : "comes and goes";
         case Kind::spikes: return known ? fmt::format("has spikes of {:.0f} deg/s", finding.size) : "has spikes";
         case Kind::mounting: return known ? fmt::format("is mounted {:.0f} degrees off", finding.size) : "is mounted wrongly";
@@ -86,6 +99,7 @@ std::vector<InstrumentIndex> compared_of(const Report& report)
 
 std::string without_comparison(const Report& report, const std::vector<InstrumentIndex>& compared)
 {
+    if (report.instruments.size() == 1) return fmt::format("The log holds one gyro, {}: there is nothing to compare it with.", report.instruments.front().name);
     const auto partly = std::count_if(report.instruments.begin(), report.instruments.end(), [](const InstrumentFacts& f) { return !f.compared; });
     std::string sentence = compared.empty() ? "No gyro was logged at full rate" : fmt::format("Only {} was logged at full rate", report.instruments[compared.front()].name);
     sentence += compared.empty() ? ": nothing can be compared." : ": there is nothing to compare it with.";
@@ -113,7 +127,7 @@ std::string others_agree(const Report& report, const std::vector<InstrumentIndex
 std::string faulty_sentence(const Report& report, const std::vector<InstrumentIndex>& compared)
 {
     const Finding& first = report.findings.front();
-    std::string sentence = fmt::format("{} {} {}.", place_of(first, report), words_of(first), time_of(first, report));
+    std::string sentence = statement_of(first, report) + ".";
     std::set<InstrumentIndex> also;
     for (const Finding& finding : report.findings)
         if (finding.certainty == Certainty::isolated && finding.instrument && finding.instrument != first.instrument) also.insert(*finding.instrument);
@@ -123,12 +137,13 @@ std::string faulty_sentence(const Report& report, const std::vector<InstrumentIn
 
 std::string healthy_sentence(const Report& report, const std::vector<InstrumentIndex>& compared)
 {
-    std::string sentence = fmt::format("No gyro is faulty: {} agree over {:.0f} s.", list_of(names_of(compared, report)), report.duration_s);
+    std::string sentence = fmt::format("No gyro is faulty: {} agree over {:.0f} s.", list_of(names_of(compared, report)), report.logged_s());
+    if (!report.holes.empty())
+        sentence += fmt::format(" For {:.0f} s besides, the log holds nothing.", report.duration_s - report.logged_s());
     if (report.findings.empty()) return sentence;
     const Finding& first = report.findings.front();
     const std::string where = first.instrument ? report.instruments[*first.instrument].name : "between " + list_of(names_of(first.candidates, report));
-    return sentence + fmt::format(" {} short disagreement{} passed (the clearest: {}, {}).", report.findings.size(),
-                                  report.findings.size() == 1 ? "" : "s", where, time_of(first, report));
+    return sentence + fmt::format(" {} passed (the clearest: {}, {}).", counted(report.findings.size(), "short disagreement"), where, time_of(first, report));
 }
 
 }  // namespace
@@ -153,9 +168,26 @@ std::string_view name_of(Certainty certainty)
     return "transient";
 }
 
+double Report::logged_s() const
+{
+    double logged_s = duration_s;
+    for (const Hole& hole : holes) logged_s -= hole.to_s - hole.from_s;
+    return logged_s;
+}
+
+bool Report::judged() const
+{
+    return compared_of(*this).size() >= 2 && logged_s() >= least_duration_s;
+}
+
 bool Report::found_anything() const
 {
     return std::any_of(findings.begin(), findings.end(), [](const Finding& f) { return f.certainty != Certainty::transient; });
+}
+
+std::string counted(std::uint64_t count, std::string_view thing)
+{
+    return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
 }
 
 std::string list_of(const std::vector<std::string>& names)
@@ -168,7 +200,7 @@ std::string list_of(const std::vector<std::string>& names)
 std::string words_of(const Finding& finding)
 {
     std::string text = size_words(finding);
-    if (finding.bias_deg_s) text += fmt::format(" and reads {:+.1f} deg/s too much", *finding.bias_deg_s);
+    if (finding.bias_deg_s) text += " and reads " + too_much(*finding.bias_deg_s, 0);
     if (!finding.remark.empty()) text += " (" + finding.remark + ")";
     return text;
 }
@@ -179,9 +211,16 @@ std::string place_of(const Finding& finding, const Report& report)
         const std::string& name = report.instruments[*finding.instrument].name;
         return finding.axis ? fmt::format("{} {}", name, "xyz"[*finding.axis]) : name;
     }
+    const auto names = names_of(finding.candidates, report);
+    if (is_disagreement(finding) || finding.kind == Kind::saturated) return list_of(names);
     std::string place;
-    for (const std::string& name : names_of(finding.candidates, report)) place += (place.empty() ? "" : " or ") + name;
+    for (const std::string& name : names) place += (place.empty() ? "" : " or ") + name;
     return place;
+}
+
+std::string statement_of(const Finding& finding, const Report& report)
+{
+    return fmt::format("{} {} {}", place_of(finding, report), words_of(finding), time_of(finding, report));
 }
 
 std::string time_of(const Finding& finding, const Report& report)
@@ -194,14 +233,17 @@ std::string time_of(const Finding& finding, const Report& report)
 std::string sentence_of(const Report& report)
 {
     const auto compared = compared_of(report);
+    const auto beyond = [&](InstrumentIndex m) { return report.instruments[m].figures.is_beyond_gyros(); };
+    if (!compared.empty() && std::all_of(compared.begin(), compared.end(), beyond))
+        return "The rates are larger than any gyro reads: their unit is probably wrong, and what follows means nothing until it is right.";
     const bool certain = !report.findings.empty() && report.findings.front().certainty == Certainty::isolated;
     if (certain) return faulty_sentence(report, compared);
     if (compared.size() < 2) return without_comparison(report, compared);
-    if (report.duration_s < least_duration_s)
-        return fmt::format("The log holds {:.1f} s: too little to judge {}.", report.duration_s, list_of(names_of(compared, report)));
+    if (!report.judged())
+        return fmt::format("The log holds {:.1f} s: too little to judge {}.", report.logged_s(), list_of(names_of(compared, report)));
     if (!report.found_anything()) return healthy_sentence(report, compared);
     const Finding& first = report.findings.front();
-    if (first.instrument || first.kind == Kind::saturated) return fmt::format("{}: {} {}.", place_of(first, report), words_of(first), time_of(first, report));
+    if (first.instrument || first.kind == Kind::saturated) return statement_of(first, report) + ".";
     const std::string names = list_of(names_of(first.candidates, report));
     const std::string how = first.kind == Kind::bias ? "" : " (one of them " + words_of(first) + ")";
     return fmt::format("{} disagree {}{}: with {} gyros nobody can say which one is wrong.", names, time_of(first, report), how,

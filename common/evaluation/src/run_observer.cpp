@@ -134,6 +134,7 @@ void RunObserver::on_verdict(const FaultVerdict& verdict)
     lane->verdict = verdict;
     lane->isolated_ever |= verdict.isolated_mask;
     lane->isolated.update(verdict.isolated_mask, static_cast<double>(verdict.sample_time_ns) * 1e-9);
+    lane->undecided.add(verdict);
     ++lane->verdicts;
     const auto state = state_of(verdict);
     const bool suspicious = state == VerdictState::suspect || state == VerdictState::ambiguous || state == VerdictState::blind;

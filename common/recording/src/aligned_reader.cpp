@@ -76,11 +76,14 @@ private:
 
 }  // namespace
 
-tl::expected<std::unique_ptr<Reader>, std::string> open_aligned(const std::filesystem::path& file)
+tl::expected<std::unique_ptr<Reader>, std::string> open_aligned(const std::filesystem::path& file, const LogOptions& options,
+                                                                  std::vector<std::string>& remarks)
 {
-    auto found = survey(std::span(&file, 1), {});
+    auto found = survey(std::span(&file, 1), options);
     if (!found) return tl::unexpected(found.error());
     if (auto tied = tie_clocks(*found); !tied) return tl::unexpected(tied.error());
+    for (const SurveyedLog& log : found->logs) remarks.insert(remarks.end(), log.remarks.begin(), log.remarks.end());
+    remarks.insert(remarks.end(), found->remarks.begin(), found->remarks.end());
     auto logs = AlignedLogs::open(*found);
     if (!logs) return tl::unexpected(logs.error());
     return std::make_unique<AlignedReader>(*found, std::move(*logs));

@@ -1,5 +1,7 @@
 #include "quorient/recording/merge.hpp"
 
+#include "aligned_reader.hpp"
+
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
@@ -33,9 +35,10 @@ Profile turned_angle(Reader& reader)
     return angle;
 }
 
-tl::expected<Profile, std::string> rate_profile(const std::filesystem::path& file)
+tl::expected<Profile, std::string> rate_profile(const std::filesystem::path& file, const LogOptions& options)
 {
-    const auto reader = open_log(file);
+    std::vector<std::string> remarks;
+    const auto reader = open_log(file, options, remarks);
     if (!reader) return tl::unexpected(reader.error());
     if ((*reader)->description().axis_count < 3) return tl::unexpected(fmt::format("{}: fewer than three axes", file.string()));
     const Profile angle = turned_angle(**reader);
@@ -78,11 +81,11 @@ double parabola_top(double left, double middle, double right)
 }  // namespace
 
 tl::expected<ClockOffset, std::string> estimate_offset(const std::filesystem::path& reference, const std::filesystem::path& other,
-                                                       double longest_s)
+                                                       double longest_s, const LogOptions& options)
 {
-    const auto a = rate_profile(reference);
+    const auto a = rate_profile(reference, options);
     if (!a) return tl::unexpected(a.error());
-    const auto b = rate_profile(other);
+    const auto b = rate_profile(other, options);
     if (!b) return tl::unexpected(b.error());
 
     const auto longest = static_cast<std::ptrdiff_t>(std::lround(longest_s / grid_s));

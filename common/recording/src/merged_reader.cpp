@@ -1,5 +1,6 @@
 #include "quorient/recording/merge.hpp"
 
+#include "aligned_reader.hpp"
 #include "mcap/record_parts.hpp"
 #include "readers.hpp"
 
@@ -200,27 +201,29 @@ private:
 
 }  // namespace
 
-tl::expected<MergedLogs, std::string> open_logs(std::span<const std::filesystem::path> files)
+tl::expected<MergedLogs, std::string> open_logs(std::span<const std::filesystem::path> files, const LogOptions& options)
 {
     if (files.empty()) return tl::unexpected(std::string("no log is named"));
     if (files.size() > 1) {
-        if (auto parts = mcap::open_parts(files)) return MergedLogs{std::move(*parts), std::vector<ClockOffset>(files.size(), {0.0, 1.0})};
+        if (auto parts = mcap::open_parts(files)) return MergedLogs{std::move(*parts), std::vector<ClockOffset>(files.size(), {0.0, 1.0}), {}};
     }
-    auto leader = open_log(files.front());
+    std::vector<std::string> remarks;
+    auto leader = open_log(files.front(), options, remarks);
     if (!leader) return tl::unexpected(leader.error());
-    MergedLogs merged{nullptr, {{0.0, 1.0}}};
+    MergedLogs merged{nullptr, {{0.0, 1.0}}, {}};
     std::vector<Follower> followers;
     std::size_t axes = (*leader)->description().axis_count;
     for (const auto& file : files.subspan(1)) {
-        const auto offset = estimate_offset(files.front(), file);
+        const auto offset = estimate_offset(files.front(), file, 3.0, options);
         if (!offset) return tl::unexpected(offset.error());
-        auto reader = open_log(file);
+        auto reader = open_log(file, options, remarks);
         if (!reader) return tl::unexpected(reader.error());
         axes += (*reader)->description().axis_count;
         if (axes > max_axes) return tl::unexpected(fmt::format("{}: more than {} axes together", file.string(), max_axes));
         followers.emplace_back(std::move(*reader), offset->offset_s);
         merged.offsets.push_back(*offset);
     }
+    merged.remarks = std::move(remarks);
     merged.reader = followers.empty() ? std::move(*leader) : std::make_unique<MergedReader>(std::move(*leader), std::move(followers));
     return merged;
 }

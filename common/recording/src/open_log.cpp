@@ -51,7 +51,7 @@ Opened open_with(const std::filesystem::path& file, const tl::expected<Columns, 
     return std::make_unique<TextLog>(std::move(*input), file, *columns, header_line, *nominal_ns);
 }
 
-Opened open_text(const std::filesystem::path& file, Input input)
+Opened open_text(const std::filesystem::path& file, Input input, const LogOptions& options, std::vector<std::string>& remarks)
 {
     LineSource lines(std::move(input));
     std::string_view line;
@@ -62,14 +62,20 @@ Opened open_text(const std::filesystem::path& file, Input input)
         if (const auto columns = dot_columns(header))
             return open_with<DotReader>(file, *columns, *columns ? (*columns)->time_unit_ns : 1.0, lines);
     }
-    return open_aligned(file);
+    return open_aligned(file, options, remarks);
 }
 
 }  // namespace
 
 Opened open_log(const std::filesystem::path& file)
 {
-    if (std::filesystem::is_directory(file)) return open_aligned(file);
+    std::vector<std::string> remarks;
+    return open_log(file, {}, remarks);
+}
+
+Opened open_log(const std::filesystem::path& file, const LogOptions& options, std::vector<std::string>& remarks)
+{
+    if (std::filesystem::is_directory(file)) return open_aligned(file, options, remarks);
     auto input = open_input(file);
     if (!input) return Error(input.error());
     const Bytes bytes = input->peek(sniffed_bytes);
@@ -78,8 +84,8 @@ Opened open_log(const std::filesystem::path& file)
     if (kind == Kind::mcap) {
         if (auto frames = mcap::FrameReader::open(*input, file.filename().string())) return std::move(*frames);
     }
-    if (kind == Kind::text) return open_text(file, std::move(*input));
-    return open_aligned(file);
+    if (kind == Kind::text) return open_text(file, std::move(*input), options, remarks);
+    return open_aligned(file, options, remarks);
 }
 
 }  // namespace quorient::recording

@@ -233,6 +233,61 @@ TEST(CsvLog, tells_the_unit_by_gravity_that_turns_with_the_body)
     };
     EXPECT_THAT(samples_of(turning(1.0)).remarks, Contains(AllOf(HasSubstr("read as rad/s"), HasSubstr("gravity"))));
     EXPECT_THAT(samples_of(turning(degree)).remarks, Contains(AllOf(HasSubstr("read as deg/s"), HasSubstr("gravity"))));
+    const std::string columns = "gx,gy,gz,";
+    const auto stated = [&](const std::string& text, const std::string& unit) {
+        return samples_of(replaced(text, columns, "gx [" + unit + "],gy [" + unit + "],gz [" + unit + "],")).remarks;
+    };
+    EXPECT_THAT(stated(turning(1.0), "deg/s"), Contains(HasSubstr("unit may be wrong")));
+    EXPECT_THAT(stated(turning(1.0), "rad/s"), testing::Not(Contains(HasSubstr("unit may be wrong"))));
+}
+
+TEST(CsvLog, reads_the_units_of_a_header_however_they_are_spelled)
+{
+    const std::string body = rows(20, "");
+    for (const std::string unit : {"[\xC2\xB0/s]", "(\xC2\xBA/s)", "[\xB0/s]", "(degrees/s)", "[deg s^-1]", "(deg per s)", "[deg/sec]", "(dps)"}) {
+        SCOPED_TRACE(unit);
+        expect_the_rows(samples_of("Time (s),gx " + unit + ",gy " + unit + ",gz " + unit + body), 20, "log");
+        expect_the_rows(samples_of("Zeit [s],gx " + unit + ",gy,gz" + body), 20, "log");
+    }
+    expect_the_rows(samples_of("time,gx,gy,gz\ns,deg/s,deg/s,deg/s" + body), 20, "log");
+}
+
+TEST(CsvLog, refuses_a_unit_that_is_none_of_a_gyros)
+{
+    const std::string text = rows(20, "time_s,g0x [rpm],g0y [rpm],g0z [rpm]");
+    EXPECT_THAT(refusal_of(text), AllOf(HasSubstr("'rpm'"), HasSubstr("--unit")));
+    expect_the_rows(samples_of(text, {RateUnit::deg_s, {}, {}}), 20, "g0");
+    EXPECT_THAT(refusal_of("time_s,gx [deg/s],gy [rev/min],gz [deg/s]" + rows(20, "")), HasSubstr("'rev/min'"));
+}
+
+TEST(CsvLog, reads_points_between_thousands_where_commas_are_decimal)
+{
+    const Samples log = samples_of(std::string("t (ms);gx (deg/s);gy (deg/s);gz (deg/s)\n990;0,5;1.000,5;2\n1.000;0,5;1,5;-1.234\n1.010;0,5;1,5;2,5\n"));
+    ASSERT_EQ(log.samples.size(), 3U);
+    EXPECT_EQ(log.samples[1].time_ns, 1'000'000'000);
+    EXPECT_NEAR(log.samples[0].rate_rad_s[1] / degree, 1000.5, 1e-9);
+    EXPECT_NEAR(log.samples[1].rate_rad_s[2] / degree, -1234, 1e-9);
+    const Samples points = samples_of(std::string("t (s);gx_dps;gy_dps;gz_dps\n1.000;1;2;3\n1.010;1;2;3\n"));
+    ASSERT_EQ(points.samples.size(), 2U);
+    EXPECT_EQ(points.samples[1].time_ns, 1'010'000'000) << "without a decimal comma a point is a decimal one";
+}
+
+TEST(CsvLog, goes_on_over_midnight_with_times_of_day)
+{
+    const Samples log = samples_of(std::string("date,time,gx_dps,gy_dps,gz_dps\n2026-05-01,23:59:59.980,1,2,3\n2026-05-01,23:59:59.990,1,2,3\n"
+                                               "2026-05-02,00:00:00.000,1,2,3\n2026-05-02,00:00:00.010,1,2,3\n"));
+    ASSERT_EQ(log.samples.size(), 4U);
+    for (std::size_t i = 1; i < 4; ++i) EXPECT_EQ(log.samples[i].time_ns - log.samples[i - 1].time_ns, 10'000'000) << i;
+}
+
+TEST(CsvLog, counts_texts_for_no_value_as_missing)
+{
+    for (const std::string missing : {"", "NaN", "nan", "-nan", "null", "#N/A", "1.#QNAN", "--"}) {
+        SCOPED_TRACE(missing);
+        const Samples log = samples_of("t_s,gx_dps,gy_dps,gz_dps\n1.00,1,2,3\n1.01,1," + missing + ",3\n1.02,1,2,3\n");
+        ASSERT_EQ(log.samples.size(), 3U);
+        EXPECT_TRUE(std::isnan(log.samples[1].rate_rad_s[1]));
+    }
 }
 
 TEST(CsvLog, says_where_the_user_contradicts_the_header)

@@ -66,6 +66,28 @@ std::string log_of(double period_s, double duration_s, double offset_s, double s
     return text.str();
 }
 
+TEST_F(Surveyed, puts_the_instruments_of_a_table_in_the_order_of_their_numbers)
+{
+    std::string text = "time_ms,id,gx_dps,gy_dps,gz_dps\n";
+    for (int i = 0; i < 200; ++i)
+        for (const int id : {10, 2, 1}) text += std::to_string(10 * i) + "," + std::to_string(id) + ",1," + std::to_string(i % 7) + ",3\n";
+    const Survey found = survey_of({write("long.csv", text)});
+    EXPECT_THAT(compared_names(found), ElementsAre("id1", "id2", "id10"));
+    for (const AlignedFrame& frame : frames_of(found)) EXPECT_EQ(frame.valid_mask, 0b111'111'111U);
+}
+
+TEST_F(Surveyed, says_that_the_unit_is_wrong_where_rates_are_beyond_any_gyro)
+{
+    const auto turning = [](const std::string& unit, int every) {
+        std::string text = "time_s,g0x [" + unit + "],g0y [" + unit + "],g0z [" + unit + "]\n";
+        for (int i = 0; i < 1000; ++i) text += std::to_string(0.01 * i) + "," + (i % every == 0 ? "180" : "0.5") + ",0.1,0.2\n";
+        return text;
+    };
+    EXPECT_THAT(survey_of({write("wrong.csv", turning("rad/s", 3))}).remarks, Contains(HasSubstr("unit is probably wrong")));
+    EXPECT_TRUE(survey_of({write("right.csv", turning("deg/s", 3))}).remarks.empty());
+    EXPECT_TRUE(survey_of({write("spikes.csv", turning("rad/s", 250))}).remarks.empty()) << "a few shocks are no wrong unit";
+}
+
 TEST_F(Surveyed, ties_clocks_that_differ_in_offset_and_pace)
 {
     const auto first = write("a.csv", log_of(0.01, 400, 0, 0, 3));

@@ -30,8 +30,8 @@ system::System offline(system::System system)
 
 }  // namespace
 
-Offline::Offline(system::System system, evaluation::RunObserver& observer, report::ReplayReport& report, report::RunTimeline* timeline)
-    : system_(offline(std::move(system))), bus_(hub_.open()), loop_(*bus_, clock_, never_stop_)
+Offline::Offline(system::System system, evaluation::RunObserver& observer, report::ReplayReport& report, const recording::LogOptions& log, report::RunTimeline* timeline)
+    : system_(offline(std::move(system))), log_(log), bus_(hub_.open()), loop_(*bus_, clock_, never_stop_)
 {
     observe(observer, report);
     if (timeline) draw(*timeline);
@@ -72,7 +72,7 @@ void Offline::draw(report::RunTimeline& timeline)
 
 tl::expected<void, std::string> Offline::run()
 {
-    auto source = sensor::make_source(system_.sensor, replay_epoch);
+    auto source = sensor::make_source(system_.sensor, replay_epoch, log_);
     if (!source) return tl::make_unexpected(source.error());
     sensor::SensorPublisher publisher{system_.sensor, std::move(*source), *bus_, loop_};
     while (!loop_.quit_requested()) {

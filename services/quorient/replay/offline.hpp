@@ -21,8 +21,17 @@ namespace quorient::replay {
 /// Every process of a system in one thread, on the local bus, under virtual time: the same objects as live, bit-identical on every run.
 class Offline {
 public:
+    /// @param log       what a table does not say itself
     /// @param timeline  may be absent
-    Offline(system::System system, evaluation::RunObserver& observer, report::ReplayReport& report, report::RunTimeline* timeline = nullptr);
+    Offline(system::System system, evaluation::RunObserver& observer, report::ReplayReport& report, const recording::LogOptions& log,
+            report::RunTimeline* timeline = nullptr);
+
+    /// Calls `handler` with each message of a topic. To be called before run().
+    template <class Topic, class Handler>
+    void watch(const Topic& topic, Handler handler)
+    {
+        loop_.on(bus_->subscribe(topic), std::move(handler));
+    }
 
     /// Until the source ends. @returns what is wrong with the source.
     tl::expected<void, std::string> run();
@@ -38,6 +47,7 @@ private:
     void draw(report::RunTimeline& timeline);
 
     system::System system_;
+    recording::LogOptions log_;
     runtime::VirtualClock clock_;
     std::atomic<bool> never_stop_{false};
     bus::LocalHub hub_;

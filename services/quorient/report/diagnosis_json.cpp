@@ -1,5 +1,6 @@
 #include "report/diagnosis_json.hpp"
 
+#include <cmath>
 #include <optional>
 
 namespace quorient::cli {
@@ -29,6 +30,14 @@ Json rotation_json(const std::optional<Eigen::Quaterniond>& rotation)
     return Json::array({rotation->w(), rotation->x(), rotation->y(), rotation->z()});
 }
 
+/// Least and largest; sensors without a thermometer report 0 all the time.
+Json temperature_json(const recording::InstrumentFigures& figures)
+{
+    const double least = figures.temperature_min_c;
+    const double most = figures.temperature_max_c;
+    return std::isfinite(least) && (least != 0 || most != 0) ? Json::array({least, most}) : Json(nullptr);
+}
+
 Json instrument_json(const diagnosis::InstrumentFacts& facts)
 {
     const recording::InstrumentFigures& figures = facts.figures;
@@ -56,7 +65,7 @@ Json instrument_json(const diagnosis::InstrumentFacts& facts)
             {"rotation", rotation_json(facts.rotation)},
             {"noise_rest_deg_s", list_of(facts.noise_rest_deg_s)},
             {"noise_motion_deg_s", list_of(facts.noise_motion_deg_s)},
-            {"temperature_c", Json::array({figures.temperature_min_c, figures.temperature_max_c})}};
+            {"temperature_c", temperature_json(figures)}};
 }
 
 Json finding_json(const diagnosis::Finding& finding, const diagnosis::Report& report)
@@ -101,6 +110,8 @@ Json diagnosis_json(const diagnosis::Report& report)
     json["attitude"] = attitude_json(report);
     json["rests"] = Json::array();
     for (const auto& rest : report.rests) json["rests"].push_back({{"from_s", rest.from_s}, {"to_s", rest.to_s}});
+    json["holes"] = Json::array();
+    for (const auto& hole : report.holes) json["holes"].push_back({{"from_s", hole.from_s}, {"to_s", hole.to_s}});
     json["remarks"] = report.remarks;
     return json;
 }

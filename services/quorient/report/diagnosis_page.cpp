@@ -7,6 +7,7 @@
 #include "quorient/diagnosis/words.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 
 namespace quorient::cli {
@@ -18,7 +19,7 @@ using diagnosis::Report;
 constexpr std::string_view style =
     "body{font-family:sans-serif;max-width:60em;margin:1em auto;padding:0 .8em;color:#111;background:#fff;line-height:1.35}"
     "h1{font-size:1.25em;padding:.5em .7em;border-left:.5em solid #009e73;background:#f3f3f3}h1.isolated{border-color:#d00000}"
-    "h1.detected{border-color:#e69f00}h2{font-size:1.05em;margin:1.4em 0 .3em}svg{width:100%;height:auto;display:block;font-size:11px;"
+    "h1.detected{border-color:#e69f00}h1.open{border-color:#888}h2{font-size:1.05em;margin:1.4em 0 .3em}svg{width:100%;height:auto;display:block;font-size:11px;"
     "font-family:sans-serif;break-inside:avoid}svg .g{stroke:#ddd;fill:none}svg .t{font-weight:bold}svg .l{fill:none;stroke-width:1.2}"
     "svg .b{fill-opacity:.45;stroke-width:.6}svg .o{paint-order:stroke;stroke:#fff;stroke-width:3px}.keys span{white-space:nowrap;margin-right:1em}"
     ".keys i{display:inline-block;width:1.2em;height:.6em;margin-right:.3em}ul{padding-left:1.2em;margin:.3em 0}.wide{overflow-x:auto}"
@@ -45,8 +46,8 @@ public:
     {
         std::string page = "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><meta name='viewport' content='width=device-width, initial-scale=1'>\n";
         page += fmt::format("<title>{}</title>\n<style>{}</style></head><body>\n", markup_escaped(report_.log), style);
-        const std::string_view state = report_.findings.empty() ? "" : name_of(report_.findings.front().certainty);
-        page += fmt::format("<h1 class='{}'>{}</h1>\n<p>{}: {:.1f} s</p>\n", state, markup_escaped(report_.sentence), markup_escaped(report_.log), report_.duration_s);
+        const std::string_view state = !report_.findings.empty() ? name_of(report_.findings.front().certainty) : report_.judged() ? "" : "open";
+        page += fmt::format("<h1 class='{}'>{}</h1>\n<p>{}: {:.1f} s</p>\n", state, markup_escaped(report_.sentence), markup_escaped(report_.log), report_.logged_s());
         page += findings();
         if (!report_.plot.bins.empty()) page += diagrams();
         page += fmt::format("<h2>All figures</h2>\n<pre>{}</pre>\n", markup_escaped(diagnosis_text(report_)));
@@ -59,8 +60,7 @@ private:
         if (report_.findings.empty()) return "<h2>Findings</h2>\n<p>None.</p>\n";
         std::string text = "<h2>Findings</h2>\n<ul>\n";
         for (const auto& finding : report_.findings)
-            text += fmt::format("<li><b>{}</b>: {} {} {}</li>\n", name_of(finding.certainty), markup_escaped(place_of(finding, report_)),
-                                markup_escaped(words_of(finding)), time_of(finding, report_));
+            text += fmt::format("<li><b>{}</b>: {}</li>\n", name_of(finding.certainty), markup_escaped(statement_of(finding, report_)));
         return text + "</ul>\n";
     }
 
@@ -72,14 +72,23 @@ private:
         text += "</p>\n";
         if (!report_.findings.empty()) text += svg_element(bar_strip("Findings", span_, bars()));
         for (int axis = 0; axis < 3; ++axis) text += svg_element(band_strip(fmt::format("Rate about {}, all gyros", "xyz"[axis]), "deg/s", span_, rates(axis)));
-        for (std::size_t m = 0; m < compared_.size(); ++m)
+        for (std::size_t m = 0; m < compared_.size() && was_watched(); ++m)
             text += svg_element(band_strip(fmt::format("{}: deviation from the others, and what it stays below while sound (dashed)", report_.instruments[compared_[m]].name),
                                            "deg/s", span_, residuals(m)));
         if (report_.attitude)
-            text += svg_element(band_strip(fmt::format("Attitude with {0} among the others, and by {0} alone (dashed), against that without it",
+            text += svg_element(band_strip(fmt::format("Attitude with {0} among the others; by {0} alone (dashed)",
                                                        report_.instruments[report_.attitude->left_out].name),
                                            "deg", span_, attitudes()));
         return text;
+    }
+
+    /// The detector has said what it expects: a log of half a second ends before that.
+    bool was_watched() const
+    {
+        const auto has_bound = [](const diagnosis::PlotBin& bin) {
+            return std::any_of(bin.of.begin(), bin.of.end(), [](const diagnosis::PlotBin::Instrument& one) { return one.bound_deg_s > 0; });
+        };
+        return std::any_of(report_.plot.bins.begin(), report_.plot.bins.end(), has_bound);
     }
 
     std::vector<Bar> bars() const
@@ -88,7 +97,8 @@ private:
         for (const auto& finding : report_.findings) {
             const bool certain = finding.certainty == Certainty::isolated;
             const bool detected = finding.certainty == Certainty::detected;
-            found.push_back({fmt::format("{} {}", place_of(finding, report_), name_of(finding.kind)), certain ? "#d00000" : detected ? "#e69f00" : "#bbbbbb",
+            const bool disagreement = !finding.instrument && finding.kind == diagnosis::Kind::bias;
+            found.push_back({fmt::format("{} {}", place_of(finding, report_), disagreement ? "disagree" : name_of(finding.kind)), certain ? "#d00000" : detected ? "#e69f00" : "#bbbbbb",
                              finding.from_s, finding.to_s.value_or(span_.to_s)});
         }
         return found;

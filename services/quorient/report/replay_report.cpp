@@ -20,12 +20,6 @@ bool seen(const FaultVerdict& verdict)
     return sees_fault(verdict);
 }
 
-bool names_nobody(VerdictState state)
-{
-    return state == VerdictState::suspect || state == VerdictState::ambiguous || state == VerdictState::blind ||
-           state == VerdictState::provisional || state == VerdictState::saturated;
-}
-
 }  // namespace
 
 void ReplayReport::on_description(const ClusterDescription& description)
@@ -73,8 +67,6 @@ void ReplayReport::judge(std::size_t lane, const FaultVerdict& verdict)
     its.isolated = verdict.isolated_mask;
     // A detector of instruments rightly takes the whole instrument of a faulty axis.
     if (newly != 0) isolations_.push_back({lane, time_s, newly, (newly & faulty) != 0});
-    if (names_nobody(state_of(verdict)) && its.time_s > 0) its.undecided_s[state_of(verdict)] += time_s - its.time_s;
-    its.time_s = time_s;
 }
 
 void ReplayReport::on_voted(const VotedAttitude& voted)
@@ -120,16 +112,6 @@ nlohmann::ordered_json ReplayReport::isolations() const
                         {"names", axis_names(description_, entry.axes)},
                         {"diagnosis", diagnoses_text(lanes_[entry.lane].diagnosis, description_, entry.axes)}});
     return list;
-}
-
-nlohmann::ordered_json ReplayReport::undecided_s() const
-{
-    auto by_lane = nlohmann::ordered_json::object();
-    for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
-        auto& entry = by_lane[system_.lanes[lane].name] = nlohmann::ordered_json::object();
-        for (const auto& [state, seconds] : lanes_[lane].undecided_s) entry[std::string(to_string(state))] = seconds;
-    }
-    return by_lane;
 }
 
 }  // namespace quorient::report

@@ -6,7 +6,6 @@
 #include "quorient/messages/voted_attitude.hpp"
 #include "quorient/system/system.hpp"
 
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -32,9 +31,6 @@ public:
     /// Those of them that contradict a truth: empty where no fault was stated, since a log as it is may well hold one.
     nlohmann::ordered_json false_isolations() const;
 
-    /// The time that each lane spent in verdicts that name nobody [s]: "SUSPECT", "AMBIGUOUS", "BLIND", "PROVISIONAL", "SATURATED".
-    nlohmann::ordered_json undecided_s() const;
-
     /// The last attitude that a frame stands behind.
     const std::optional<VotedAttitude>& final_attitude() const { return final_attitude_; }
 
@@ -57,8 +53,6 @@ private:
     struct Lane {
         AxisMask isolated = 0;
         FaultDiagnosis diagnosis;
-        std::map<VerdictState, double> undecided_s;
-        double time_s = 0;  ///< of the newest verdict
     };
 
     void judge(std::size_t lane, const FaultVerdict& verdict);

@@ -5,11 +5,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <sstream>
 
 namespace quorient::cli {
@@ -51,6 +53,49 @@ protected:
 private:
     std::filesystem::path dir_ = std::filesystem::temp_directory_path() / ("quorient_calibrate_" + std::to_string(getpid()));
 };
+
+/// Three gyros at 100 Hz, 8 s of rest and then motion about all axes: g1 is turned by 90 degrees about z, g2 by 180 about x.
+std::string turned_gyros()
+{
+    std::mt19937_64 random(11);
+    std::normal_distribution<double> noise(0.0, 0.05);
+    std::ostringstream text;
+    text << "time_s";
+    for (int m = 0; m < 3; ++m) text << ",g" << m << "x [deg/s],g" << m << "y [deg/s],g" << m << "z [deg/s]";
+    text << '\n';
+    for (int k = 0; k < 4000; ++k) {
+        const double t = 0.01 * k;
+        const double moves = t > 8 ? 1 : 0;
+        const double x = moves * 60 * std::sin(1.1 * t);
+        const double y = moves * 50 * std::sin(0.7 * t + 1);
+        const double z = moves * 70 * std::sin(0.9 * t + 2);
+        text << t;
+        for (const double rate : {x, y, z, y, -x, z, x, -y, -z}) text << ',' << rate + noise(random);
+        text << '\n';
+    }
+    return text.str();
+}
+
+TEST_F(CalibrateVerb, says_how_instruments_are_mounted_in_words_and_as_rotations)
+{
+    std::ofstream(path("turned.csv")) << turned_gyros();
+
+    const Output output = run("calibrate " + path("turned.csv") + " --json");
+
+    ASSERT_EQ(output.exit_code, 0) << output.error;
+    const json mounting = json::parse(output.out)["mounting"];
+    ASSERT_EQ(mounting.size(), 3U);
+    EXPECT_THAT(mounting[0]["words"].get<std::string>(), HasSubstr("parallel to the body's axes"));
+    EXPECT_THAT(mounting[1]["words"].get<std::string>(), HasSubstr("turned by 90 degrees about z"));
+    EXPECT_THAT(mounting[2]["words"].get<std::string>(), HasSubstr("turned by 180 degrees about x"));
+    const std::array<std::array<double, 4>, 3> truth{{{1, 0, 0, 0}, {std::sqrt(0.5), 0, 0, std::sqrt(0.5)}, {0, 1, 0, 0}}};
+    for (std::size_t m = 0; m < 3; ++m) {
+        double product = 0;
+        for (std::size_t i = 0; i < 4; ++i) product += truth[m][i] * mounting[m]["rotation"][i].get<double>();
+        EXPECT_GT(std::abs(product), std::cos(0.5 * degree)) << m;
+    }
+    EXPECT_THAT(run("calibrate " + path("turned.csv")).out, HasSubstr("rotation: ["));
+}
 
 TEST_F(CalibrateVerb, says_the_same_of_the_same_sensors_in_two_recordings)
 {

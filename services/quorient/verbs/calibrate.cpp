@@ -3,6 +3,7 @@
 #include "cli/program.hpp"
 #include "quorient/calibration/gated_terms.hpp"
 #include "cli/json_output.hpp"
+#include "cli/log_choice.hpp"
 #include "cli/output_file.hpp"
 #include "quorient/calibration/log_sample.hpp"
 #include "quorient/recording/merge.hpp"
@@ -21,6 +22,7 @@ namespace {
 
 struct CalibrateOptions {
     std::vector<std::string> logs;
+    LogChoice log;
     ClusterChoice choice;
     std::string out;
     std::string plot;
@@ -73,12 +75,13 @@ void run(const CalibrateOptions& options)
     if (!options.out.empty()) out.emplace(options.out, options.force);
     if (!options.plot.empty()) plot.emplace(options.plot, options.force);
     const std::vector<std::filesystem::path> files(options.logs.begin(), options.logs.end());
-    const auto merged = recording::open_logs(files);
+    const auto merged = recording::open_logs(files, options.log.options());
     if (!merged) fail(merged.error());
     for (std::size_t i = 1; i < files.size(); ++i)
         fmt::print(stderr, "{}: its clock shows {:+.4f} s against {} (correlation {:.3f})\n", options.logs[i], merged->offsets[i].offset_s,
                    options.logs.front(), merged->offsets[i].correlation);
     recording::Reader& reader = *merged->reader;
+    for (const auto& remark : merged->remarks) fmt::print(stderr, "{}\n", remark);
     const ClusterDescription nominal = nominal_cluster(options, reader);
     const auto samples = read_samples(reader);
     auto calibration = calibration::calibrate(samples, nominal, options.rest);
@@ -115,6 +118,7 @@ void add_calibrate(Program& program)
                      "any log of gyros: ArduPilot, PX4, ROS 2 bag, CSV, MIMU4444, Xsens DOT; several of one motion are merged")
         .value_name("LOG ...")
         .required();
+    options->log.add_to(verb);
     add_cluster_options(verb, options->choice);
     verb.option("--out", options->out, "cluster file to write (YAML)");
     verb.option("--plot", options->plot, "Allan deviation and motion noise, as SVG");

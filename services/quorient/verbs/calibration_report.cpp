@@ -1,5 +1,6 @@
 #include "calibration_report.hpp"
 
+#include "mounting_report.hpp"
 #include "quorient/messages/words.hpp"
 
 #include <fmt/format.h>
@@ -164,6 +165,7 @@ Json calibration_json(const Calibration& calibration, const Searches& searches, 
             {"axes", axes},
             {"axes_note", calibration.axes_note.empty() ? Json() : Json(calibration.axes_note)},
             {"outside_class", outside_json(calibration)},
+            {"mounting", calibration.motion ? mounting_json(calibration.cluster.description) : Json::array()},
             {"motion_noise", motion_json(calibration, searches)},
             {"replay", replay_json(calibration, searches)},
             {"allan", {{"tau_s", tau}, {"deviation_rad_s", deviation}}}};
@@ -195,7 +197,8 @@ std::string motion_text(const Calibration& calibration)
 {
     if (!calibration.motion) return fmt::format("\nnominal axes are kept: {}\n", calibration.axes_note);
     const auto& motion = *calibration.motion;
-    std::string text = fmt::format("\naxes fitted: they disagree by {:.2f} deg/s rms in motion\n", calibration.axes_residual_rad_s / degree);
+    std::string text = mounting_text(calibration.cluster.description);
+    text += fmt::format("\naxes fitted: they disagree by {:.2f} deg/s rms in motion\n", calibration.axes_residual_rad_s / degree);
     if (calibration.cluster.motion_level > 0)
         text += fmt::format("motion noise: {:.2f} times the usual of an array (so much keeps the accumulating detector silent here)\n",
                             calibration.cluster.motion_level);

@@ -1,4 +1,5 @@
 #include "cli/json_output.hpp"
+#include "cli/log_choice.hpp"
 #include "cli/output_file.hpp"
 #include "report/diagnosis_json.hpp"
 #include "report/diagnosis_page.hpp"
@@ -20,29 +21,12 @@ struct DiagnoseOptions {
     std::optional<std::string> reference;
     std::string sensor_class = "consumer";
     std::optional<std::string> mount;
-    std::optional<std::string> unit;
-    std::optional<std::string> time_unit;
-    std::optional<double> lsb_per_deg_s;
+    LogChoice log;
     std::optional<std::string> html;
     bool force = false;
     bool json = false;
     bool check = false;
 };
-
-recording::LogOptions log_options(const DiagnoseOptions& options)
-{
-    recording::LogOptions log;
-    log.lsb_per_deg_s = options.lsb_per_deg_s;
-    if (options.unit == "rad/s") log.rate_unit = recording::RateUnit::rad_s;
-    if (options.unit == "deg/s") log.rate_unit = recording::RateUnit::deg_s;
-    if (options.unit == "mdeg/s") log.rate_unit = recording::RateUnit::mdeg_s;
-    if (options.unit == "mrad/s") log.rate_unit = recording::RateUnit::mrad_s;
-    if (options.time_unit == "s") log.time_unit = recording::TimeUnit::s;
-    if (options.time_unit == "ms") log.time_unit = recording::TimeUnit::ms;
-    if (options.time_unit == "us") log.time_unit = recording::TimeUnit::us;
-    if (options.time_unit == "ns") log.time_unit = recording::TimeUnit::ns;
-    return log;
-}
 
 diagnosis::Options diagnosis_options(const DiagnoseOptions& options)
 {
@@ -54,7 +38,7 @@ diagnosis::Options diagnosis_options(const DiagnoseOptions& options)
 
 SurveyedFrames read(const std::vector<std::string>& files, const DiagnoseOptions& options)
 {
-    auto frames = SurveyedFrames::read(std::vector<std::filesystem::path>(files.begin(), files.end()), log_options(options));
+    auto frames = SurveyedFrames::read(std::vector<std::filesystem::path>(files.begin(), files.end()), options.log.options());
     if (!frames) fail(frames.error());
     return std::move(*frames);
 }
@@ -97,9 +81,7 @@ void add_diagnose(Program& program)
     verb.option("--class", options->sensor_class, "how much sound gyros may differ").one_of({"consumer", "industrial", "tactical", "fibre-optic"}).shows_default();
     verb.option("--mount", options->mount, "all on one board, or separate boxes on a structure that flexes; by default several logs are boxes")
         .one_of({"board", "structure"});
-    verb.option("--unit", options->unit, "of the rates in a CSV that does not say it").one_of({"rad/s", "deg/s", "mrad/s", "mdeg/s"});
-    verb.option("--time-unit", options->time_unit, "of the times in a CSV that does not say it").one_of({"s", "ms", "us", "ns"});
-    verb.option("--lsb-per-deg-s", options->lsb_per_deg_s, "the rates in a CSV are raw counts, so many per deg/s").within(settings::above_zero);
+    options->log.add_to(verb);
     verb.option("--html", options->html, "writes the report with diagrams as one page that needs no network").value_name("FILE");
     add_force(verb, options->force);
     verb.flag("--json", options->json, "one JSON object in place of the text");

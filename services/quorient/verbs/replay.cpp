@@ -1,8 +1,12 @@
 #include "replay/offline.hpp"
+#include "replay/transcripts.hpp"
 #include "report/replay_report.hpp"
 #include "report/run_picture.hpp"
+#include "report/summary.hpp"
+#include "report/undecided.hpp"
 #include "quorient/evaluation/run_observer.hpp"
 #include "cli/json_output.hpp"
+#include "cli/log_choice.hpp"
 #include "cli/output_file.hpp"
 #include "cli/system_options.hpp"
 #include "verbs.hpp"
@@ -18,9 +22,12 @@ namespace {
 struct ReplayOptions {
     SystemOptions system;
     std::vector<std::string> logs;
+    LogChoice choice;
     std::optional<double> from_s;
     std::optional<double> to_s;
     std::string plot;
+    std::optional<std::string> events;
+    std::optional<std::string> verdicts;
     bool force = false;
     bool json = false;
 };
@@ -35,7 +42,8 @@ Json report_json(const evaluation::RunObserver& run, const report::ReplayReport&
     json["faults"] = report.faults();
     json["isolations"] = report.isolations();
     json["false_isolations"] = report.false_isolations();
-    json["undecided_s"] = report.undecided_s();
+    json["undecided_s"] = report::undecided_s_json(run);
+    json["undecided"] = report::undecided_json(run);
     auto& attitude = json["attitude"];
     attitude = {{"final", nullptr}, {"max_error_rad", nullptr}, {"final_error_rad", nullptr}};
     if (report.final_attitude()) attitude["final"] = report.final_attitude()->attitude;
@@ -46,7 +54,7 @@ Json report_json(const evaluation::RunObserver& run, const report::ReplayReport&
     return json;
 }
 
-void print_table(const Json& json)
+void print_table(const Json& json, const evaluation::RunObserver& run)
 {
     fmt::print("frames {}\nlog {}\n", json["frames"].get<std::uint64_t>(), json["log"].get<std::string>());
     for (const auto& fault : json["faults"]) {
@@ -61,8 +69,7 @@ void print_table(const Json& json)
                    entry["time_s"].get<double>(), entry["diagnosis"].get<std::string>().empty() ? "" : "; ", entry["diagnosis"].get<std::string>());
     if (json["isolations"].empty()) fmt::print("isolated: nothing\n");
     if (!json["faults"].empty()) fmt::print("false isolations {}, against the faults stated above\n", json["false_isolations"].size());
-    for (const auto& [lane, states] : json["undecided_s"].items())
-        for (const auto& [state, seconds] : states.items()) fmt::print("lane {} {} for {:.3f} s\n", lane, state, seconds.get<double>());
+    fmt::print("{}", report::undecided_text(run));
     fmt::print("final attitude {}, largest error {}, final error {} rad\n", dump(json["attitude"]["final"]),
                dump(json["attitude"]["max_error_rad"]), dump(json["attitude"]["final_error_rad"]));
 }
@@ -97,20 +104,32 @@ int replay(ReplayOptions options)
     report::ReplayReport report{system};
     std::optional<report::RunTimeline> timeline;
     if (picture) timeline.emplace(system, run);
-    replay::Offline offline{system, run, report, timeline ? &*timeline : nullptr};
+    std::optional<OutputFile> events;
+    std::optional<OutputFile> verdicts;
+    if (options.events) events.emplace(*options.events, options.force);
+    if (options.verdicts) verdicts.emplace(*options.verdicts, options.force);
+    replay::Offline offline{system, run, report, options.choice.options(), timeline ? &*timeline : nullptr};
+    if (events) replay::write_events(offline, events->stream());
+    if (verdicts) replay::write_verdicts(offline, system, verdicts->stream());
     if (const auto done = offline.run(); !done) {
         fmt::print(stderr, "{}\n", done.error());
         return 2;
     }
     if (run.truth_frames() == 0) fail(fmt::format("no frame to replay: {}", offline.remarks()));
-    const auto json = report_json(run, report, offline);
+    for (auto* const file : {&events, &verdicts})
+        if (*file) (*file)->finish();
+    const auto failures = report::unmet(system, run);
+    auto json = report_json(run, report, offline);
+    json["unmet"] = failures;
     if (options.json) fmt::print("{}\n", dump(json));
-    else print_table(json);
+    else print_table(json, run);
     if (picture) {
         picture->stream() << report::run_picture(system, run, *timeline);
         picture->finish();
     }
-    return 0;
+    for (const auto& failure : failures) fmt::print(stderr, "not as expected: {}\n", failure);
+    if (!failures.empty()) fmt::print(stderr, "the expectations are those of {}; --set expect=null leaves them out\n", options.system.file);
+    return failures.empty() ? ExitCode::done : ExitCode::not_as_asked;
 }
 
 }  // namespace
@@ -125,12 +144,16 @@ void add_replay(Program& program)
         .required()
         .value_name("LOG ...");
     options->system.add_replay_to(verb);
+    options->choice.add_to(verb);
     verb.option("--from", options->from_s, "Begin here").within(settings::not_negative).value_name("S");
     verb.option("--to", options->to_s, "End here").within(settings::above_zero).value_name("S");
     verb.option("--plot", options->plot, "Draw the run over time: attitude, residuals, axes left out, level").value_name("FILE.svg");
+    verb.option("--events", options->events, "Writes what the processes reported, one JSON object a line").value_name("FILE");
+    verb.option("--verdicts", options->verdicts, "Writes the verdict of each lane and frame as a CSV").value_name("FILE");
     add_force(verb, options->force);
     verb.flag("--json", options->json, "One JSON object");
-    verb.footer("Example:\n  quorient replay data.bin --system deploy/configurations/mimu4444.yaml --to 22 --json");
+    verb.not_as_asked_if("the file's `expect` is not met");
+    verb.footer("Example:\n  quorient replay data.bin --system deploy/configurations/mimu4444.yaml --fault axis=7,kind=bias,value=1,start=14 --to 22 --json");
     verb.run([options] {
         if (const int exit_code = replay(*options); exit_code != 0) throw Exit{exit_code};
     });

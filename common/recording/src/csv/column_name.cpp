@@ -62,6 +62,7 @@ struct UnitWords {
 
 // What stands behind a name, longest first where one ends with another.
 constexpr std::array unit_suffixes{
+    UnitWords{"degrees per second", "deg/s"}, UnitWords{"deg per sec", "deg/s"}, UnitWords{"radians per second", "rad/s"}, UnitWords{"rad per sec", "rad/s"},
     UnitWords{"rad per s", "rad/s"}, UnitWords{"rad s", "rad/s"},   UnitWords{"rads", "rad/s"},    UnitWords{"radps", "rad/s"},
     UnitWords{"mrad s", "mrad/s"},   UnitWords{"deg per s", "deg/s"}, UnitWords{"deg s", "deg/s"},  UnitWords{"degs", "deg/s"},
     UnitWords{"degps", "deg/s"},     UnitWords{"dps", "deg/s"},     UnitWords{"mdps", "mdeg/s"},   UnitWords{"mdeg s", "mdeg/s"},
@@ -78,12 +79,17 @@ std::string unit_between_brackets(std::string_view text)
     std::string plain;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const auto rest = text.substr(i);
-        if (rest.starts_with("\xC2\xB0")) plain += "deg", ++i;              // degree sign, UTF-8
+        if (rest.starts_with("\xC2\xB0") || rest.starts_with("\xC2\xBA")) plain += "deg", ++i;     // degree sign, and the ordinal taken for it
         else if (rest.starts_with("\xC2\xB5") || rest.starts_with("\xCE\xBC")) plain += "u", ++i;  // micro sign, Greek mu
+        else if (text[i] == '\xB0' || text[i] == '\xBA') plain += "deg";                            // the same in Latin-1
+        else if (text[i] == '\xB5') plain += "u";
         else if (text[i] != ' ' && text[i] != '*') plain += static_cast<char>(std::tolower(static_cast<unsigned char>(text[i])));
     }
     constexpr std::array known{UnitWords{"rad/s", "rad/s"},   UnitWords{"rads-1", "rad/s"}, UnitWords{"r/s", "rad/s"},    UnitWords{"rad/sec", "rad/s"},
                                UnitWords{"deg/s", "deg/s"},   UnitWords{"dps", "deg/s"},    UnitWords{"deg/sec", "deg/s"}, UnitWords{"degs-1", "deg/s"},
+                               UnitWords{"degs^-1", "deg/s"}, UnitWords{"rads^-1", "rad/s"}, UnitWords{"degpers", "deg/s"}, UnitWords{"radpers", "rad/s"},
+                               UnitWords{"degrees/s", "deg/s"}, UnitWords{"degree/s", "deg/s"}, UnitWords{"degrees/sec", "deg/s"}, UnitWords{"deg/second", "deg/s"},
+                               UnitWords{"degrees/second", "deg/s"}, UnitWords{"radians/s", "rad/s"}, UnitWords{"rad/second", "rad/s"}, UnitWords{"radians/second", "rad/s"},
                                UnitWords{"mdps", "mdeg/s"},   UnitWords{"mdeg/s", "mdeg/s"}, UnitWords{"mrad/s", "mrad/s"}, UnitWords{"rad", "rad"},
                                UnitWords{"deg", "deg"},       UnitWords{"s", "s"},          UnitWords{"sec", "s"},        UnitWords{"ms", "ms"},
                                UnitWords{"us", "us"},         UnitWords{"ns", "ns"},        UnitWords{"g", "g"},           UnitWords{"mg", "mg"},
@@ -101,6 +107,20 @@ std::string take_bracketed_unit(std::string_view& text)
     auto unit = unit_between_brackets(text.substr(open + 1, text.size() - open - 2));
     if (!unit.empty()) text = trimmed(text.substr(0, open));
     return unit;
+}
+
+/// Takes brackets off a name if a unit of something else stands in them, as in "gx [rpm]".
+std::string take_unknown_unit(std::string_view& text)
+{
+    if (!text.ends_with(']') && !text.ends_with(')')) return {};
+    const std::size_t open = text.find_last_of(text.back() == ']' ? '[' : '(');
+    if (open == std::string_view::npos) return {};
+    const std::string_view unit = trimmed(text.substr(open + 1, text.size() - open - 2));
+    constexpr std::array<std::string_view, 11> units{"rpm", "RPM", "rps", "Hz", "counts", "count", "LSB", "lsb", "raw", "digits", "%"};
+    const bool is_unit = unit.find('/') != std::string_view::npos || std::find(units.begin(), units.end(), unit) != units.end();
+    if (!is_unit) return {};
+    text = trimmed(text.substr(0, open));
+    return std::string(unit);
 }
 
 /// Takes words off the end if they are a unit.
@@ -129,7 +149,7 @@ bool contains(const Words& words, std::initializer_list<std::string_view> wanted
 
 bool is_rate_word(std::string_view word)
 {
-    return is_one_of(word, {"g", "gyr", "gyro", "gyros", "gyroscope", "w", "omega", "angvel", "rate", "rates", "adc"});
+    return is_one_of(word, {"g", "gyr", "gyro", "gyros", "gyroscope", "w", "omega", "angvel", "rate", "rates", "adc", "drehrate"});
 }
 
 bool is_acceleration_word(std::string_view word)
@@ -196,7 +216,7 @@ Quantity quantity_of(const Words& words, std::string_view unit, bool alone)
     if (contains(words, {"dt", "interval"})) return Quantity::interval;
     if (const auto motion = motion_of(words)) return *motion;
     if (contains(words, {"nanosec", "nsec", "nsecs"}) || (unit == "ns" && contains(words, {"stamp"}))) return Quantity::time_fraction;
-    if (contains(words, {"time", "timestamp", "stamp", "ts", "t", "elapsed", "epoch"})) return Quantity::time;
+    if (contains(words, {"time", "timestamp", "stamp", "ts", "t", "elapsed", "epoch", "zeit", "zeitstempel"})) return Quantity::time;
     if (contains(words, {"temp", "temperature"})) return Quantity::temperature;
     if (contains(words, {"counter", "seq"})) return Quantity::counter;
     const auto of_identity = [](std::string_view word) {
@@ -235,7 +255,7 @@ std::string owner_of(const Words& words, Quantity quantity)
     std::string owner;
     for (std::size_t i = 0; i < words.size(); ++i) {
         const bool of_quantity = is_rate_word(words[i]) || is_acceleration_word(words[i]) || is_joint_word(words, i) ||
-                                 is_one_of(words[i], {"linear", "time", "timestamp", "stamp", "ts", "t", "sample", "temp", "temperature", "delta",
+                                 is_one_of(words[i], {"linear", "time", "timestamp", "zeit", "zeitstempel", "stamp", "ts", "t", "sample", "temp", "temperature", "delta",
                                                       "angle", "increment", "dtheta", "dela", "dt", "interval", "integral"});
         if (of_quantity || quantity == Quantity::identity) continue;
         owner += (owner.empty() ? "" : " ") + words[i];
@@ -247,7 +267,7 @@ int rank_of_time(const Words& words)
 {
     if (contains(words, {"sample"})) return 4;  // SampleTimeFine, timestamp_sample
     if (contains(words, {"header", "stamp"})) return 3;
-    if (contains(words, {"time", "timestamp"})) return 2;
+    if (contains(words, {"time", "timestamp", "zeit", "zeitstempel"})) return 2;
     return contains(words, {"t", "ts"}) ? 1 : 0;
 }
 
@@ -266,6 +286,7 @@ ColumnName read_column_name(std::string_view header_cell)
     while (text.starts_with('#') || text.starts_with('%')) text = trimmed(text.substr(1));
     ColumnName column;
     column.unit = take_bracketed_unit(text);
+    if (column.unit.empty()) column.unknown_unit = take_unknown_unit(text);
     auto [words, begin] = words_of(text);
     const auto index = text.ends_with(']') ? take_index(words) : std::nullopt;
     if (index) text = text.substr(0, begin[words.size()]);

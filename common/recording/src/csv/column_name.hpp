@@ -16,6 +16,7 @@ struct ColumnName {
     std::optional<std::size_t> axis;  ///< 0, 1, 2 = x, y, z; of Quorient's own increments any number
     std::string owner;                ///< words that name neither quantity, axis nor unit; columns of one instrument share it
     std::string unit;                 ///< "rad/s", "deg/s", "ms" …, as spelled here; empty = not named
+    std::string unknown_unit;         ///< what stands where a unit is expected, if it is none of a gyro's
     std::string text;                 ///< the name as it stands, without quotes and unit
     bool bare = false;  ///< x, y or z and no more: a rate only where no other column is one
     int rank = 0;                     ///< among several columns of time the highest is the best: of the sampling rather than the arrival

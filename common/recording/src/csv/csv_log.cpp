@@ -109,7 +109,9 @@ std::optional<ReadOutcome> CsvLog::read(std::size_t number, InstrumentSample& sa
     }
     sample.instrument = state->place;
     constexpr std::int64_t wrap_ns = 4'294'967'296'000;  // a 32-bit count of microseconds
-    if (gyro.time_wraps && state->stamp_ns && *time_ns < *state->stamp_ns - wrap_ns / 2) state->wraps_ns += wrap_ns;
+    constexpr std::int64_t day_ns = 86'400'000'000'000;
+    const std::int64_t turn_ns = gyro.time_wraps ? wrap_ns : gyro.of_day ? day_ns : 0;
+    if (turn_ns > 0 && state->stamp_ns && *time_ns < *state->stamp_ns - turn_ns / 2) state->wraps_ns += turn_ns;
     const std::int64_t step_ns = state->stamp_ns ? *time_ns - *state->stamp_ns : 0;
     state->stamp_ns = *time_ns;
     sample.time_ns = *time_ns + state->wraps_ns;

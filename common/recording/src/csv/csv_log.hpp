@@ -29,11 +29,13 @@ private:
 
     CsvLog(Input input, std::string name, const LogOptions& options);
     std::optional<std::string> find_header();
+    void read_units_row();
     std::optional<std::string> understand();
     std::optional<std::string> look_at_numbers(std::size_t rows);
     std::optional<std::string> judge_times(std::size_t rows);
     void judge_accelerations();
     std::optional<std::string> judge_rates();
+    void doubt_stated_unit();
     std::optional<std::string> apply_options();
     void to_first_row();
     bool next_row();

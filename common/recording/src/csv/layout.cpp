@@ -85,6 +85,10 @@ GyroColumns gyro_of(const Columns& columns, const std::string& owner, const std:
     gyro.increments = quantity == Quantity::increment;
     gyro.name = common_name({columns[value[0]].text, columns[value[1]].text, columns[value[2]].text});
     for (std::size_t k = 0; k < 3; ++k) gyro.factor[k] = factor_of(columns[value[k]].unit);
+    for (const std::size_t place : value)
+        if (gyro.unknown_unit.empty()) gyro.unknown_unit = columns[place].unknown_unit;
+    // A unit that the header names for one axis is that of all.
+    std::replace(gyro.factor.begin(), gyro.factor.end(), 0.0, *std::max_element(gyro.factor.begin(), gyro.factor.end()));
     if (gyro.increments) {
         gyro.interval = column_for(columns, Quantity::interval, owner);
         if (gyro.interval) gyro.interval_factor = static_cast<double>(time_unit_ns(columns[*gyro.interval].unit)) * 1e-9;

@@ -14,6 +14,7 @@ struct GyroColumns {
     std::string name;                  ///< empty: the table names none
     std::array<std::size_t, 3> value{};
     std::array<double, 3> factor{};    ///< to rad/s, or rad for increments; 0 = the header does not say
+    std::string unknown_unit;          ///< that the header names for them
     bool increments = false;
     std::optional<std::size_t> interval;
     double interval_factor = 0;        ///< to s; 0 = the header does not say
@@ -24,6 +25,7 @@ struct GyroColumns {
     std::size_t time = 0;
     std::int64_t time_unit_ns = 0;     ///< 0 = the header does not say
     std::optional<std::size_t> time_fraction;  ///< nanoseconds to be added to whole seconds
+    bool of_day = false;               ///< times of day without a date: they start over at midnight
     bool time_wraps = false;           ///< a 32-bit count of microseconds, as Xsens DOT's
 };
 

@@ -159,14 +159,20 @@ std::optional<RateJudge::Verdict> RateJudge::by_step() const
     return Verdict{RateUnit::rad_s, fmt::format("their step of {:.6g} rad/s is {:.4f} deg/s, that of a usual sensor", shown, shown / degree)};
 }
 
-std::optional<RateJudge::Verdict> RateJudge::by_gravity() const
+std::optional<double> RateJudge::times_of_gravity() const
 {
     if (stretches_ < fewest_stretches || !(turn_squared_ > 0) || !(seen_squared_ > 0)) return std::nullopt;
     if (common_ / std::sqrt(turn_squared_ * seen_squared_) < least_correlation) return std::nullopt;
-    const double gain = common_ / turn_squared_;
-    const auto says = [&](double unit) { return std::abs(gain / unit - 1) < gain_tolerance; };
-    if (says(1.0)) return Verdict{RateUnit::rad_s, fmt::format("gravity turns {:.2f} times as far as they say in rad/s", gain)};
-    if (says(degree)) return Verdict{RateUnit::deg_s, fmt::format("gravity turns {:.2f} times as far as they say in deg/s", gain / degree)};
+    return common_ / turn_squared_;
+}
+
+std::optional<RateJudge::Verdict> RateJudge::by_gravity() const
+{
+    const auto gain = times_of_gravity();
+    if (!gain) return std::nullopt;
+    const auto says = [&](double unit) { return std::abs(*gain / unit - 1) < gain_tolerance; };
+    if (says(1.0)) return Verdict{RateUnit::rad_s, fmt::format("gravity turns {:.2f} times as far as they say in rad/s", *gain)};
+    if (says(degree)) return Verdict{RateUnit::deg_s, fmt::format("gravity turns {:.2f} times as far as they say in deg/s", *gain / degree)};
     return std::nullopt;
 }
 

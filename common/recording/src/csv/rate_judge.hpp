@@ -25,6 +25,9 @@ public:
     /// What can be said now. More samples may tell more.
     Verdict verdict() const;
 
+    /// How many times as far gravity turns in the body as the rates say, taken as rad/s. Nothing: the motion does not show it.
+    std::optional<double> times_of_gravity() const;
+
     std::size_t samples() const { return samples_; }
     bool looks_like_counts() const;
 

@@ -111,12 +111,39 @@ std::optional<std::int64_t> decimal_ns(std::string_view text, std::int64_t unit_
     return negative ? -ns : ns;
 }
 
-/// A copy with a point in place of the comma. @returns nothing if the cell is longer than any number.
+/// "1.234.567" or "1.234,5": points stand between thousands.
+bool has_thousands(std::string_view cell)
+{
+    const std::string_view whole = cell.substr(0, cell.find(','));
+    const std::size_t first = whole.find('.');
+    if (first == std::string_view::npos || first == 0 || first > 3) return false;
+    for (std::size_t i = first; i < whole.size(); ++i)
+        if ((i - first) % 4 == 0 ? whole[i] != '.' : !is_digit(whole[i])) return false;
+    return (whole.size() - first) % 4 == 0;
+}
+
+/// A copy with a point in place of the comma, and without those between thousands. @returns nothing if the cell is longer than any number.
 std::optional<std::string_view> with_point(std::string_view cell, std::array<char, 64>& copy)
 {
     if (cell.size() > copy.size()) return std::nullopt;
-    std::replace_copy(cell.begin(), cell.end(), copy.begin(), ',', '.');
-    return std::string_view(copy.data(), cell.size());
+    const bool thousands = has_thousands(cell);
+    std::size_t size = 0;
+    for (const char c : cell)
+        if (c != '.' || !thousands) copy[size++] = c == ',' ? '.' : c;
+    return std::string_view(copy.data(), size);
+}
+
+/// "12:34:56.789" since midnight.
+std::optional<std::int64_t> time_of_day_ns(std::string_view text)
+{
+    const auto hours = take_digits(text, 2);
+    if (!hours || !take(text, ":")) return std::nullopt;
+    const auto minutes = take_digits(text, 2);
+    if (!minutes || !take(text, ":")) return std::nullopt;
+    const auto seconds = take_digits(text, 2);
+    const std::int64_t fraction_ns = seconds && take(text, ".,") ? take_fraction_ns(text) : 0;
+    if (!seconds || !text.empty() || *hours > 24 || *minutes > 59 || *seconds > 60) return std::nullopt;
+    return ((*hours * std::int64_t{60} + *minutes) * 60 + *seconds) * 1'000'000'000 + fraction_ns;
 }
 
 }  // namespace
@@ -143,29 +170,35 @@ void split_cells(std::string_view line, char delimiter, std::vector<std::string_
 std::optional<double> cell_number(std::string_view cell, bool decimal_comma)
 {
     std::array<char, 64> copy;
-    const auto text = decimal_comma && cell.find(',') != std::string_view::npos ? with_point(cell, copy) : std::optional(cell);
+    const auto text = decimal_comma && cell.find_first_of(",.") != std::string_view::npos ? with_point(cell, copy) : std::optional(cell);
     if (!text) return std::nullopt;
     if (const auto value = number(*text)) return value;
-    for (const std::string_view missing : {"", "-", "null", "NULL", "None", "NA", "N/A", "NaN", "n/a"})
+    for (const std::string_view missing : {"", "-", "--", "null", "NULL", "None", "NA", "N/A", "#N/A", "NaN", "n/a", "1.#QNAN", "-1.#IND", "1.#IND", "1.#INF", "-1.#INF"})
         if (*text == missing) return std::numeric_limits<double>::quiet_NaN();
     return std::nullopt;
 }
 
 bool is_iso_time(std::string_view cell)
 {
-    return iso_time_ns(cell).has_value();
+    return iso_time_ns(cell).has_value() || is_time_of_day(cell);
+}
+
+bool is_time_of_day(std::string_view cell)
+{
+    return time_of_day_ns(cell).has_value();
 }
 
 std::optional<std::int64_t> cell_time_ns(std::string_view cell, std::int64_t unit_ns, bool decimal_comma)
 {
     std::array<char, 64> copy;
-    if (decimal_comma && cell.find(',') != std::string_view::npos && cell.find(':') == std::string_view::npos) {
+    if (decimal_comma && cell.find_first_of(",.") != std::string_view::npos && cell.find(':') == std::string_view::npos) {
         const auto text = with_point(cell, copy);
         if (!text) return std::nullopt;
         cell = *text;
     }
     if (const auto exact = decimal_ns(cell, unit_ns)) return exact;
     if (const auto iso = iso_time_ns(cell)) return iso;
+    if (const auto of_day = time_of_day_ns(cell)) return of_day;
     const auto value = number(cell);
     return value ? log_time_ns(*value, static_cast<double>(unit_ns)) : std::nullopt;
 }

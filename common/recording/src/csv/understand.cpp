@@ -73,11 +73,37 @@ std::optional<std::string> CsvLog::find_header()
             layout_ = **layout;
             dialect_.delimiter = delimiter;
             header_cells_ = cells_.size();
+            read_units_row();
             return std::nullopt;
         }
     }
     header_line_ = 1;
     return trouble;
+}
+
+/// The line below the names may have their units. They are read as if they stood behind the names.
+void CsvLog::read_units_row()
+{
+    std::vector<std::string> names(cells_.begin(), cells_.end());
+    std::string_view line;
+    if (lines_.next(line) != LineSource::Outcome::line) return;
+    split_cells(line, dialect_.delimiter, cells_);
+    if (cells_.size() != names.size()) return;
+    std::size_t units = 0;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        std::string_view unit = cells_[i];
+        if (unit.empty() || unit == "-") continue;
+        if (unit.front() == '[' || unit.front() == '(') unit = unit.substr(1, unit.size() - 2);
+        names[i] += fmt::format(" [{}]", unit);
+        const ColumnName named = read_column_name(names[i]);
+        if (named.unit.empty() && named.unknown_unit.empty()) return;
+        ++units;
+    }
+    const std::vector<std::string_view> header(names.begin(), names.end());
+    const auto layout = read_layout(header);
+    if (units < 4 || !layout || !*layout) return;
+    layout_ = **layout;
+    header_line_ = lines_.line_number();
 }
 
 std::optional<std::string> CsvLog::understand()
@@ -94,6 +120,10 @@ std::optional<std::string> CsvLog::apply_options()
 {
     if (options_.rate_unit && options_.lsb_per_deg_s) return "--unit and --lsb-per-deg-s contradict each other";
     for (GyroColumns& gyro : layout_.gyros) {
+        if (!gyro.unknown_unit.empty() && !options_.rate_unit && !options_.lsb_per_deg_s)
+            return fmt::format("the header names '{}' as the gyros' unit, and known are rad/s, deg/s, mrad/s and mdeg/s: say --unit, or "
+                               "--lsb-per-deg-s for raw counts",
+                               gyro.unknown_unit);
         if (options_.time_unit && !gyro.time_fraction) gyro.time_unit_ns = in_ns(*options_.time_unit);
         if (!options_.rate_unit && !options_.lsb_per_deg_s) continue;
         const double factor = options_.rate_unit ? factor_of(*options_.rate_unit) : degree / *options_.lsb_per_deg_s;
@@ -135,6 +165,7 @@ std::optional<std::string> CsvLog::judge_times(std::size_t rows)
         bool dates = false;
         for (std::size_t i = 0; i < rows && next_row(); ++i) {
             if (gyro.time_unit_ns == 0 && is_iso_time(cell(gyro.time))) dates = true;
+            if (dates && is_time_of_day(cell(gyro.time))) gyro.of_day = true;
             const auto time_ns = dates || gyro.time_unit_ns > 0 ? time_of(gyro) : std::nullopt;
             const auto plain = time_ns ? std::optional(static_cast<double>(*time_ns)) : cell_number(cell(gyro.time), dialect_.decimal_comma);
             if (!plain || !std::isfinite(*plain)) continue;
@@ -153,7 +184,7 @@ std::optional<std::string> CsvLog::judge_times(std::size_t rows)
             const auto unit_ns = unit_of_step(step);
             if (!unit_ns) return fmt::format("the time steps by {:.6g}, which is no gyro's step in s, ms, us or ns: say --time-unit", step);
             gyro.time_unit_ns = *unit_ns;
-            const std::string remark = fmt::format("time read as {}, since its usual step is {:.6g}", word_of_time(*unit_ns), step);
+            const std::string remark = fmt::format("time read as {}, since its usual step is {}", word_of_time(*unit_ns), step < 1000 ? fmt::format("{:.6g}", step) : fmt::format("{:.0f}", step));
             if (std::find(remarks_.begin(), remarks_.end(), remark) == remarks_.end()) remarks_.push_back(remark);
         }
         if (gyro.interval && gyro.interval_factor == 0 && !intervals.empty()) {
@@ -183,7 +214,7 @@ void CsvLog::judge_accelerations()
         const double usual = median(sizes);
         if (usual > 0.7 && usual < 1.4) gyro.acceleration_factor = gravity_m_s2;
         else if (usual > 0.7 * gravity_m_s2 && usual < 1.4 * gravity_m_s2) gyro.acceleration_factor = 1;
-        else remarks_.push_back(fmt::format("accelerometers left out: {:.6g} is gravity neither in g nor in m/s^2", usual));
+        else remarks_.push_back(fmt::format("accelerometers left out: they usually read {:.4g}, which is gravity neither in g nor in m/s^2", usual));
     }
 }
 
@@ -191,7 +222,7 @@ void CsvLog::judge_accelerations()
 std::optional<std::string> CsvLog::judge_rates()
 {
     const auto unknown = [](const GyroColumns& gyro) { return !(gyro.factor[0] > 0); };
-    if (std::none_of(layout_.gyros.begin(), layout_.gyros.end(), unknown)) return std::nullopt;
+    if (std::none_of(layout_.gyros.begin(), layout_.gyros.end(), unknown)) return doubt_stated_unit(), std::nullopt;
     to_first_row();
     std::vector<double> stated(layout_.gyros.size());
     for (std::size_t i = 0; i < layout_.gyros.size(); ++i)
@@ -220,6 +251,27 @@ std::optional<std::string> CsvLog::judge_rates()
         if (stated[i] > 0) layout_.gyros[i].factor.fill(factor_of(*verdict.unit));
     remarks_.push_back(fmt::format("gyros read as {}, since {}", word_of(*verdict.unit), verdict.reason));
     return std::nullopt;
+}
+
+/// A unit that is stated may still be wrong: gravity that turns with the body tells.
+void CsvLog::doubt_stated_unit()
+{
+    const GyroColumns& gyro = layout_.gyros.front();
+    if (!gyro.acceleration || gyro.increments) return;
+    to_first_row();
+    RateJudge judge;
+    std::optional<std::int64_t> before_ns;
+    std::optional<std::size_t> first;
+    InstrumentSample sample;
+    for (std::size_t rows = 0; rows < judged_at_once && next_row(); ++rows) {
+        if (read(0, sample) != ReadOutcome::frame || sample.instrument != first.value_or(sample.instrument)) continue;
+        first = sample.instrument;
+        const double interval_s = before_ns ? static_cast<double>(sample.time_ns - *before_ns) * 1e-9 : 0;
+        before_ns = sample.time_ns;
+        judge.add(interval_s, sample.rate_rad_s, sample.acceleration_m_s2);
+    }
+    if (const auto times = judge.times_of_gravity(); times && (*times > 10 || *times < 0.1))
+        remarks_.push_back(fmt::format("the gyros' unit may be wrong: gravity turns {:.3g} times as far as their rates say; --unit overrides the header", *times));
 }
 
 }  // namespace quorient::recording::csv

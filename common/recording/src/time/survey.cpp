@@ -4,8 +4,12 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <map>
+#include <span>
+#include <string_view>
+#include <utility>
 
 namespace quorient::recording {
 namespace {
@@ -102,6 +106,33 @@ void note_log(const InstrumentLog& log, SurveyedLog& noted)
     noted.selections = log.selections();
 }
 
+/// The number at the end of a name, "IMU12" or "IMU[2]", and what stands before it.
+std::pair<std::string_view, unsigned> numbered(std::string_view name)
+{
+    const auto last = name.find_last_of("0123456789");
+    if (last == std::string_view::npos) return {name, 0};
+    const auto before = name.find_last_not_of("0123456789", last);
+    const std::size_t begin = before == std::string_view::npos ? 0 : before + 1;
+    unsigned number = 0;
+    std::from_chars(name.data() + begin, name.data() + last + 1, number);
+    return {name.substr(0, begin), number};
+}
+
+/// A table may begin with the row of any instrument: those of one source that differ in their number are put in its order.
+void sort_by_number(std::span<SurveyedInstrument> instruments)
+{
+    for (auto begin = instruments.begin(); begin != instruments.end();) {
+        const auto same = [&](const SurveyedInstrument& other) {
+            return other.instrument.source == begin->instrument.source && numbered(other.instrument.name).first == numbered(begin->instrument.name).first;
+        };
+        const auto end = std::find_if_not(begin, instruments.end(), same);
+        std::stable_sort(begin, end, [](const SurveyedInstrument& a, const SurveyedInstrument& b) {
+            return numbered(a.instrument.name).second < numbered(b.instrument.name).second;
+        });
+        begin = end;
+    }
+}
+
 tl::expected<void, std::string> survey_log(std::size_t number, std::size_t most, const Progress& progress, Survey& found)
 {
     auto opened = open_instruments(found.files[number], found.options);
@@ -115,7 +146,7 @@ tl::expected<void, std::string> survey_log(std::size_t number, std::size_t most,
     std::uint64_t calls = 0;
     for (auto outcome = log.next(sample); outcome != ReadOutcome::end; outcome = log.next(sample)) {
         if (outcome == ReadOutcome::frame) reading.add(sample);
-        else if (noted.problems.size() < most_problems) noted.problems.push_back(log.problem());
+        else if (++noted.refused <= most_problems) noted.problems.push_back(log.problem());
         if (progress && ++calls % progress_every == 0)
             progress((static_cast<double>(number) + log.progress()) / static_cast<double>(found.files.size()));
     }
@@ -128,6 +159,7 @@ tl::expected<void, std::string> survey_log(std::size_t number, std::size_t most,
         if (reading.periods[i]) instrument.arrival_period_s = reading.periods[i]->period_s();
         found.instruments.push_back(std::move(instrument));
     }
+    sort_by_number(std::span(found.instruments).subspan(first));
     for (std::size_t i = first; i < found.instruments.size(); ++i) {
         const InstrumentFigures& figures = found.instruments[i].figures;
         noted.first_ns = i == first ? figures.first_ns : std::min(noted.first_ns, figures.first_ns);
@@ -195,6 +227,10 @@ tl::expected<Survey, std::string> survey(std::span<const std::filesystem::path> 
     for (std::size_t i = 0; i < files.size(); ++i)
         if (auto read = survey_log(i, most_kept / files.size(), progress, found); !read) return tl::unexpected(read.error());
     if (found.instruments.empty()) return tl::unexpected(fmt::format("{}: no gyro in it", files.front().string()));
+    for (const SurveyedInstrument& instrument : found.instruments)
+        if (instrument.figures.is_beyond_gyros())
+            found.remarks.push_back(fmt::format("{}: {} of {} samples are beyond 4500 deg/s, which no gyro reads: the unit is probably wrong (--unit states that of a table)",
+                                                instrument.instrument.name, instrument.figures.beyond_gyros, instrument.figures.samples));
     found.one_epoch = share_an_epoch(found.logs);
     choose_compared(found);
     return found;

@@ -16,6 +16,7 @@ constexpr double shortest_hole_periods = 20.0;
 constexpr double stretch_s = 2.0;
 constexpr double same_rate = 0.2;             // relative: a stretch that differs by more has another rate
 constexpr std::size_t most_changes = 64;
+constexpr double widest_gyro_rad_s = 4500 * 0.017453292519943295;
 constexpr std::uint64_t extreme_again = 5;    // times that an axis shows its extreme before it is a limit
 
 double seconds_of(std::int64_t ns)
@@ -114,6 +115,8 @@ void InstrumentMeter::judge_step(std::int64_t step_ns, double covered_s)
 void InstrumentMeter::judge_values(const InstrumentSample& sample)
 {
     bool whole = true;
+    const auto beyond = [](double rate_rad_s) { return std::isfinite(rate_rad_s) && std::abs(rate_rad_s) > widest_gyro_rad_s; };
+    if (std::any_of(sample.rate_rad_s.begin(), sample.rate_rad_s.end(), beyond)) ++figures_.beyond_gyros;
     for (std::size_t k = 0; k < 3; ++k) {
         const double rate = sample.rate_rad_s[k];
         whole = whole && std::isfinite(rate);

@@ -110,6 +110,12 @@ struct Rest {
     double to_s = 0;
 };
 
+/// The logger paused: no instrument has data.
+struct Hole {
+    double from_s = 0;
+    double to_s = 0;
+};
+
 struct Report {
     std::string log;
     std::string sentence;
@@ -121,8 +127,15 @@ struct Report {
     std::vector<PeerFinding> peers;
     std::optional<AttitudeDifference> attitude;
     std::vector<Rest> rests;
+    std::vector<Hole> holes;  ///< each 10 s or longer
     std::vector<std::string> remarks;
     Plot plot;
+
+    /// The duration without the holes.
+    double logged_s() const;
+
+    /// Two instruments or more hold enough of the motion for a verdict.
+    bool judged() const;
 
     /// Something that did not pass by itself.
     bool found_anything() const;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "quorient/evaluation/fault_spells.hpp"
+#include "quorient/evaluation/undecided_spells.hpp"
 #include "quorient/attitude/integrator.hpp"
 #include "quorient/messages/attitude_state.hpp"
 #include "quorient/messages/cluster_description.hpp"
@@ -44,6 +45,7 @@ struct LaneRecord {
     std::uint64_t verdicts = 0;
     std::uint64_t suspicious = 0;  ///< verdicts that were SUSPECT, AMBIGUOUS or BLIND
     Spells isolated;
+    UndecidedSpells undecided;
     std::uint64_t frames = 0;
     std::uint64_t largest_roll_back = 0;
     Errors errors;

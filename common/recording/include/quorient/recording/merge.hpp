@@ -1,5 +1,6 @@
 #pragma once
 
+#include "quorient/recording/instrument_log.hpp"
 #include "quorient/recording/reader.hpp"
 
 #include <span>
@@ -16,11 +17,12 @@ struct ClockOffset {
 /// Compares how fast the two logs' first triads turned (a figure that no mounting changes) at all offsets up to `longest_s` either way.
 /// @returns an error if no offset makes them alike: different motions, or none.
 tl::expected<ClockOffset, std::string> estimate_offset(const std::filesystem::path& reference, const std::filesystem::path& other,
-                                                       double longest_s = 3.0);
+                                                       double longest_s = 3.0, const LogOptions& options = {});
 
 struct MergedLogs {
     std::unique_ptr<Reader> reader;
     std::vector<ClockOffset> offsets;  ///< for each log, against the first one, whose own is 0
+    std::vector<std::string> remarks;  ///< on how the logs were understood: "gyros read as deg/s, since …"
 };
 
 /// Several logs of one motion as one cluster: the axes of all logs, at the sample times of the first log. The increments of the others are
@@ -29,6 +31,6 @@ struct MergedLogs {
 /// the common log begins when all have begun and ends with the first of them. Each log keeps its own mounting; `quorient calibrate`
 /// finds the mountings. The files of one rotated record of Quorient are no different sensors: they are read one after the other.
 /// @returns an error as open_log and estimate_offset do, or if there are more than 24 axes.
-tl::expected<MergedLogs, std::string> open_logs(std::span<const std::filesystem::path> files);
+tl::expected<MergedLogs, std::string> open_logs(std::span<const std::filesystem::path> files, const LogOptions& options = {});
 
 }  // namespace quorient::recording

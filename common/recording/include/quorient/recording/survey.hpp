@@ -53,6 +53,7 @@ struct SurveyedLog {
     std::string format;
     std::vector<std::string> remarks;
     std::vector<std::string> problems;  ///< the first ones
+    std::uint64_t refused = 0;          ///< records; how many problems there were
     Statistics statistics;
     std::vector<Selection> selections;
     std::int64_t first_ns = 0;  ///< over all its instruments

@@ -28,9 +28,13 @@ struct InstrumentFigures {
     bool clipping_logged = false;
     std::array<std::uint64_t, 3> at_extreme{};     ///< samples at the largest magnitude of the axis, if that came again and again
     std::array<double, 3> largest_rad_s{};
+    std::uint64_t beyond_gyros = 0;                ///< samples with a rate that no gyro reads: 4500 deg/s and more
     std::uint64_t not_finite = 0;                  ///< samples without a value on one axis at least
     double temperature_min_c = not_logged;
     double temperature_max_c = not_logged;
+
+    /// Not a spike now and then: the unit of the rates is wrong.
+    bool is_beyond_gyros() const { return 100 * beyond_gyros > samples; }
 
     double rate_hz() const { return period_s > 0 ? 1.0 / period_s : 0.0; }
     double duration_s() const { return static_cast<double>(last_ns - first_ns) * 1e-9; }
