@@ -11,7 +11,7 @@ namespace quorient::monitor::test {
 
 inline system::System demo(const std::vector<std::string>& set = {"monitor.port=0"})
 {
-    auto loaded = system::load(QUORIENT_SOURCE_DIR "/deploy/configurations/demo.yaml", {.dds = {}, .domain = {}, .process = {}, .set = set});
+    auto loaded = system::load(QUORIENT_SOURCE_DIR "/deploy/configurations/demo.yaml", {.dds = {}, .domain = {}, .processes = {}, .set = set});
     if (!loaded) throw std::runtime_error(loaded.error());
     return std::move(*loaded);
 }
