@@ -26,6 +26,11 @@ target_compile_options(quorient_warnings INTERFACE -Wall -Wextra -Wpedantic -Wco
   # With precompiled headers g++ 12 sees strings overrun inside the standard library where they are not (GCC bug 105329).
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-array-bounds$<SEMICOLON>-Wno-stringop-overread>)
 
+if(FASTDDS_LIBRARY STREQUAL fastdds)
+  # tinyxml2, below Fast DDS, defines this for its users there. A precompiled header serves only sources with the same definition.
+  add_compile_definitions(_FILE_OFFSET_BITS=64)
+endif()
+
 # Precompiled headers: what nearly every source of a kind includes, parsed once. Sources still include what they use; a build with
 # -DQUORIENT_PRECOMPILE=OFF shows one that does not.
 option(QUORIENT_PRECOMPILE "Precompile the headers of libraries that most sources include" ON)

@@ -10,7 +10,7 @@ find_package(tl-expected REQUIRED)
 find_package(Threads REQUIRED)
 find_package(OpenSSL REQUIRED)
 find_package(tinyxml2 REQUIRED)
-find_package(Boost REQUIRED)  # headers only: quantiles
+find_package(Boost REQUIRED CONFIG)  # headers only: quantiles
 # Logs: compressed ones, and ROS 2 bags.
 find_package(PkgConfig REQUIRED)
 find_package(ZLIB REQUIRED)
@@ -28,9 +28,7 @@ find_package(iceoryx_binding_c REQUIRED)  # Debian's CycloneDDSConfig.cmake does
 find_package(iceoryx_posh REQUIRED)
 find_package(CycloneDDS REQUIRED)
 find_program(IDLC idlc REQUIRED)
-find_package(fastcdr REQUIRED)
-find_package(fastrtps REQUIRED)
-find_program(FASTDDSGEN fastddsgen REQUIRED)
+include(${PROJECT_SOURCE_DIR}/idl/examples/fastdds.cmake)
 
 if(QUORIENT_TESTS)
   find_package(GTest REQUIRED)

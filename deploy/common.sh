@@ -2,6 +2,7 @@
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$root/build/release
+. "$root/deploy/releases.sh"
 
 say() { printf '== %s\n' "$*"; }
 fail() {
@@ -15,13 +16,14 @@ as_root() {
     else fail "needs root or sudo to run: $*"; fi
 }
 
-# Installs the packages of deploy/packages.txt that are missing, and nothing when none is.
+# Installs the packages of deploy/packages.txt for this machine's release that are missing, and nothing when none is.
 install_packages() {
-    local missing=() package
+    local missing=() package release
+    release=$(own_release)
+    is_supported "$release" || fail "this machine runs '$release'; deploy/packages.txt knows the packages of $supported_releases"
     while read -r package; do
-        [ -n "$package" ] && [ "${package#\#}" = "$package" ] || continue
         dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
-    done <"$root/deploy/packages.txt"
+    done < <(packages_of "$release")
     [ ${#missing[@]} -eq 0 ] && return
     say "installing ${#missing[@]} Debian packages: ${missing[*]}"
     as_root apt-get update -qq || fail "apt-get update: is the machine's package source reachable?"

@@ -1,27 +1,19 @@
-# Sourced. The base image and the product's, without a registry.
+# Sourced, behind deploy/common.sh. The base image and the product's, without a registry.
 
 base=debian:bookworm-slim
 release=bookworm
-
-# "address suite" of every Debian package source this machine itself uses: no host name is written down here.
-package_sources() {
-    apt-get indextargets --format '$(REPO_URI) $(RELEASE)' 'Created-By: Packages' | sort -u | grep -E " ($release|$release-updates|$release-security)\$"
-}
 
 # A base image under the public one's name, so that an ordinary Dockerfile serves both here and where there is a registry.
 # An image of that name that is already there is used.
 make_base_image() {
     docker image inspect $base >/dev/null 2>&1 && return 0
-    local folder mirror
-    mirror=$(package_sources | awk -v release=$release '$2 == release {print $1; exit}')
-    [ -n "$mirror" ] || { echo "this machine has no package source for $release" >&2; return 1; }
+    local folder
     folder=$(mktemp -d /var/tmp/quorient-base.XXXXXX)
-    debootstrap --variant=minbase $release "$folder" "$mirror" >"$folder.log" 2>&1 || { tail -20 "$folder.log" >&2; rm -rf "$folder" "$folder.log"; return 1; }
-    package_sources | awk '{print "deb " $1 " " $2 " main"}' >"$folder/etc/apt/sources.list"
+    make_debian $release "$folder" || return 1
     tar -C "$folder" --numeric-owner --exclude='./var/cache/apt/archives/*.deb' --exclude='./var/lib/apt/lists/*_*' --exclude='./dev/*' \
         --exclude=./etc/resolv.conf --exclude=./etc/hostname -c . | docker import -c 'CMD ["bash"]' - $base >/dev/null
     local code=$?
-    rm -rf --one-file-system "$folder" "$folder.log"
+    rm -rf --one-file-system "$folder"
     return $code
 }
 

@@ -1,8 +1,5 @@
 // Prints what a plain subscriber receives: Fast DDS and the wire contract, nothing else of Quorient. `TOPIC {sample}` a line, until it
 // receives SIGTERM or SIGINT.   usage: quorient-observer SYSTEM.yaml
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPFinder.h>
-#include <fastrtps/utils/IPLocator.h>
 #include <yaml-cpp/yaml.h>
 #include <algorithm>
 #include <chrono>
@@ -22,7 +19,8 @@
 #include <thread>
 #include <vector>
 
-#include "quorient_msgsPubSubTypes.h"
+#include "fastdds_version.hpp"
+#include "quorient_msgsPubSubTypes.hpp"
 
 using namespace eprosima::fastdds::dds;
 using Json = nlohmann::ordered_json;
@@ -62,7 +60,7 @@ Options read(const char* file)
 /// same.
 void announce_in_order(WireProtocolConfigQos& wire)
 {
-    using namespace eprosima::fastrtps::rtps;
+    using namespace fastdds_version::rtps;
     std::vector<IPFinder::info_IP> found;
     IPFinder::getIPs(&found, false);
     std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.locator < b.locator; });
@@ -88,8 +86,8 @@ DomainParticipantQos participant_qos(const Options& options)
     announce_in_order(qos.wire_protocol());
     for (const auto& peer : options.peers) {
         for (std::uint32_t port = 10; port < 10 + 2 * options.participants_per_host; ++port) {
-            eprosima::fastrtps::rtps::Locator_t locator;
-            eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, peer);
+            fastdds_version::rtps::Locator_t locator;
+            fastdds_version::rtps::IPLocator::setIPv4(locator, peer);
             locator.port = 7400 + 250 * options.domain + port;
             builtin.initialPeersList.push_back(locator);
         }
@@ -180,7 +178,7 @@ public:
         waitset_.attach_condition(reader->get_statuscondition());
         takers_.push_back([reader, name, sample = std::make_shared<Sample>()] {
             SampleInfo info;
-            while (reader->take_next_sample(sample.get(), &info) == ReturnCode_t::RETCODE_OK) {
+            while (fastdds_version::is_ok(reader->take_next_sample(sample.get(), &info))) {
                 if (!info.valid_data) continue;  // a writer left
                 auto json = json_of(*sample);
                 json["arrival_s"] = steady_s();
@@ -194,7 +192,7 @@ public:
     {
         while (!stop) {
             ConditionSeq triggered;
-            waitset_.wait(triggered, eprosima::fastrtps::Duration_t{0, 100'000'000});
+            waitset_.wait(triggered, fastdds_version::Duration{0, 100'000'000});
             for (const auto& take : takers_) take();
             std::fflush(stdout);
         }

@@ -1,8 +1,8 @@
 #include "bytes.hpp"
 #include "quorient/bus/ros2.hpp"
-#include "quorient_msgsPubSubTypes.h"
+#include "quorient_msgsPubSubTypes.hpp"
 #include "require.hpp"
-#include "ros2_msgsPubSubTypes.h"
+#include "ros2_msgsPubSubTypes.hpp"
 #include "targets.hpp"
 #include "tolerant_type.hpp"
 
@@ -15,17 +15,16 @@ namespace {
 template <class Type>
 void decode_as(const std::uint8_t* data, std::size_t size)
 {
-    bus::fastdds::TolerantType<Type> type;
-    const std::unique_ptr<void, void (*)(void*)> sample{type.createData(),
-                                                        [](void* made) { delete static_cast<typename Type::type*>(made); }};
-    eprosima::fastrtps::rtps::SerializedPayload_t payload(static_cast<std::uint32_t>(size));
+    using namespace bus::fastdds;
+    static dds::TypeSupport type{new TolerantType<Type>};
+    const std::unique_ptr<void, void (*)(void*)> sample{type.create_data(), [](void* made) { type.delete_data(made); }};
+    wire::SerializedPayload_t payload(static_cast<std::uint32_t>(size));
     std::memcpy(payload.data, data, size);
     payload.length = static_cast<std::uint32_t>(size);
-    const bool decoded = type.deserialize(&payload, sample.get());
     // What was taken can be written again: the object is whole.
-    if (!decoded) return;
-    eprosima::fastrtps::rtps::SerializedPayload_t again(static_cast<std::uint32_t>(type.getSerializedSizeProvider(sample.get())()) + 16);
-    REQUIRE(type.serialize(sample.get(), &again));
+    if (!deserialize(type, payload, sample.get())) return;
+    wire::SerializedPayload_t again(serialized_size(type, sample.get()) + 16);
+    REQUIRE(serialize(type, sample.get(), again));
 }
 
 }  // namespace

@@ -1,8 +1,7 @@
-#include "quorient_msgsPubSubTypes.h"
+#include "quorient_msgsPubSubTypes.hpp"
 #include "raw.hpp"
+#include "version.hpp"
 
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <cstring>
 #include <fastdds/dds/core/condition/WaitSet.hpp>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -20,7 +19,7 @@ namespace {
 
 namespace dds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastdds::rtps;
-using eprosima::fastrtps::types::ReturnCode_t;
+namespace version = bus::fastdds;
 
 struct TypeEntry {
     dds::TypeSupport support;
@@ -52,7 +51,7 @@ EndpointQos with_hot_qos(EndpointQos qos, Type type, bool shared_memory)
     qos.resource_limits().max_samples = 0;
     qos.resource_limits().max_instances = 0;
     qos.resource_limits().max_samples_per_instance = 0;
-    qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+    qos.endpoint().history_memory_policy = version::wire::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
     if (!shared_memory) qos.data_sharing().off();
     return qos;
 }
@@ -89,7 +88,7 @@ public:
     bool take(void* sample) override
     {
         dds::SampleInfo info;
-        if (reader_->take_next_sample(sample_, &info) != ReturnCode_t::RETCODE_OK || !info.valid_data) return false;
+        if (!version::is_ok(reader_->take_next_sample(sample_, &info)) || !info.valid_data) return false;
         std::memcpy(sample, sample_, type_.size);
         return true;
     }

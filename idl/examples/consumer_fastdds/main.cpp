@@ -1,7 +1,5 @@
 // Prints the voted attitude: usage: consumer_fastdds [DOMAIN [KEYS NAME]]. One line per sample until SIGINT or SIGTERM.
 // In a secured system: KEYS is the directory of `quorient keys`, NAME the consumer's identity in it.
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -14,7 +12,8 @@
 #include <memory>
 #include <string>
 
-#include "quorient_msgsPubSubTypes.h"
+#include "fastdds_version.hpp"
+#include "quorient_msgsPubSubTypes.hpp"
 
 using namespace eprosima::fastdds::dds;
 
@@ -36,8 +35,8 @@ static DomainParticipantQos on_loopback(unsigned domain)
     builtin.discovery_config.initial_announcements.count = 50;
     builtin.discovery_config.initial_announcements.period = {0, 100'000'000};
     for (unsigned port = 9; port < 70; ++port) {
-        eprosima::fastrtps::rtps::Locator_t locator;
-        eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, port == 9 ? "239.255.0.1" : "127.0.0.1");
+        fastdds_version::rtps::Locator_t locator;
+        fastdds_version::rtps::IPLocator::setIPv4(locator, port == 9 ? "239.255.0.1" : "127.0.0.1");
         locator.port = 7400 + 250 * domain + (port == 9 ? 0 : port);
         builtin.initialPeersList.push_back(locator);
     }
@@ -90,10 +89,10 @@ int main(int argc, char** argv)
     waitset.attach_condition(reader->get_statuscondition());
     while (!stop) {
         ConditionSeq triggered;
-        waitset.wait(triggered, eprosima::fastrtps::Duration_t{0, 100'000'000});
+        waitset.wait(triggered, fastdds_version::Duration{0, 100'000'000});
         quorient_msgs::VotedAttitude voted;
         SampleInfo info;
-        while (reader->take_next_sample(&voted, &info) == ReturnCode_t::RETCODE_OK) {
+        while (fastdds_version::is_ok(reader->take_next_sample(&voted, &info))) {
             if (!info.valid_data) continue;  // the owner left; the next sample comes from another voter
             const auto& q = voted.attitude();
             std::printf("%llu %llu %llu voter %u level %u mode %u q %.17g %.17g %.17g %.17g sigma %.3g rad\n",

@@ -1,8 +1,5 @@
 #include "foreign.hpp"
 
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
-#include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
@@ -12,14 +9,15 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <stdexcept>
 
-#include "quorient_msgsPubSubTypes.h"
+#include "quorient_msgsPubSubTypes.hpp"
+#include "version.hpp"
 
 namespace foreign {
 
 namespace {
 
 using namespace eprosima::fastdds::dds;
-using eprosima::fastrtps::types::ReturnCode_t;
+namespace version = quorient::bus::fastdds;
 
 template <class Made>
 Made* checked(Made* made)
@@ -72,14 +70,14 @@ public:
         quorient_msgs::VotedAttitude message;
         message.unit(sample.unit);
         message.sequence_number(sample.sequence);
-        return writer_->write(&message);
+        return version::is_ok(writer_->write(&message));
     }
 
     bool take(Sample& sample) override
     {
         quorient_msgs::VotedAttitude message;
         SampleInfo info;
-        while (reader_->take_next_sample(&message, &info) == ReturnCode_t::RETCODE_OK) {
+        while (version::is_ok(reader_->take_next_sample(&message, &info))) {
             if (!info.valid_data) continue;
             sample = {message.unit(), message.sequence_number()};
             return true;
@@ -96,7 +94,7 @@ private:
         DataWriterQos qos;
         apply(wish, qos);
         qos.publish_mode().kind = SYNCHRONOUS_PUBLISH_MODE;
-        qos.reliable_writer_qos().times.heartbeatPeriod = {0, 50'000'000};
+        version::heartbeat_period(qos) = {0, 50'000'000};
         if (wish.exclusive) {
             qos.liveliness().kind = MANUAL_BY_TOPIC_LIVELINESS_QOS;
             qos.liveliness().lease_duration = {0, 50'000'000};
@@ -141,8 +139,8 @@ public:
         builtin.discovery_config.initial_announcements.count = 50;
         builtin.discovery_config.initial_announcements.period = {0, 100'000'000};
         for (unsigned port = 9; port < 70; ++port) {
-            eprosima::fastrtps::rtps::Locator_t locator;
-            eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, port == 9 ? "239.255.0.1" : "127.0.0.1");
+            version::wire::Locator_t locator;
+            version::wire::IPLocator::setIPv4(locator, port == 9 ? "239.255.0.1" : "127.0.0.1");
             locator.port = 7400 + 250 * domain + (port == 9 ? 0 : port);
             builtin.initialPeersList.push_back(locator);
         }
@@ -176,9 +174,7 @@ std::unique_ptr<Node> plain_fastdds(std::uint32_t domain)
 
 void fastdds_by_the_wire()
 {
-    eprosima::fastrtps::LibrarySettingsAttributes settings;
-    settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
-    eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
+    version::deliver_by_transports();
 }
 
 }  // namespace foreign

@@ -1,7 +1,5 @@
 // A plain DDS reader of ROS 2's types: usage: ros2_node_fastdds DOMAIN imu|diagnostics TOPIC sensor-data|default. Prints as
 // ros2_node_cyclonedds does; ends on SIGTERM.
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -14,7 +12,8 @@
 #include <memory>
 #include <string>
 
-#include "ros2_msgsPubSubTypes.h"
+#include "fastdds_version.hpp"
+#include "ros2_msgsPubSubTypes.hpp"
 
 using namespace eprosima::fastdds::dds;
 
@@ -35,8 +34,8 @@ static DomainParticipantQos on_loopback(unsigned domain)
     builtin.discovery_config.initial_announcements.count = 50;
     builtin.discovery_config.initial_announcements.period = {0, 100'000'000};
     for (unsigned port = 9; port < 70; ++port) {
-        eprosima::fastrtps::rtps::Locator_t locator;
-        eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, port == 9 ? "239.255.0.1" : "127.0.0.1");
+        fastdds_version::rtps::Locator_t locator;
+        fastdds_version::rtps::IPLocator::setIPv4(locator, port == 9 ? "239.255.0.1" : "127.0.0.1");
         locator.port = 7400 + 250 * domain + (port == 9 ? 0 : port);
         builtin.initialPeersList.push_back(locator);
     }
@@ -75,10 +74,10 @@ static int read(DomainParticipant* participant, const char* topic_name, bool sen
     waitset.attach_condition(reader->get_statuscondition());
     while (!stop) {
         ConditionSeq triggered;
-        waitset.wait(triggered, eprosima::fastrtps::Duration_t{0, 100'000'000});
+        waitset.wait(triggered, fastdds_version::Duration{0, 100'000'000});
         Message message;
         SampleInfo info;
-        while (reader->take_next_sample(&message, &info) == ReturnCode_t::RETCODE_OK) {
+        while (fastdds_version::is_ok(reader->take_next_sample(&message, &info))) {
             if (info.valid_data) print(message);
         }
         std::fflush(stdout);

@@ -6,6 +6,7 @@
 #include "ros2.hpp"
 #include "security.hpp"
 #include "types.hpp"
+#include "version.hpp"
 
 #include <fmt/format.h>
 #include <cstring>
@@ -21,9 +22,7 @@
 
 namespace quorient::bus {
 
-namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastdds::rtps;
-using eprosima::fastrtps::types::ReturnCode_t;
+namespace dds = fastdds::dds;
 
 namespace {
 
@@ -63,7 +62,7 @@ void apply(const Qos& qos, const Settings& settings, EndpointQos& endpoint)
     endpoint.resource_limits().max_samples = 0;
     endpoint.resource_limits().max_instances = 0;
     endpoint.resource_limits().max_samples_per_instance = 0;
-    endpoint.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+    endpoint.endpoint().history_memory_policy = fastdds::wire::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
     endpoint.ownership().kind = qos.exclusive ? dds::EXCLUSIVE_OWNERSHIP_QOS : dds::SHARED_OWNERSHIP_QOS;
     if (!shares_memory(settings)) endpoint.data_sharing().off();
 }
@@ -72,10 +71,10 @@ void apply(const Qos& qos, const Settings& settings, EndpointQos& endpoint)
 /// writer's list of sending locators omits shared memory.
 Transport transport_of(const dds::DataReader& reader)
 {
-    rtps::LocatorList locators;
+    fastdds::rtps::LocatorList locators;
     reader.get_listening_locators(locators);
     for (auto locator = locators.begin(); locator != locators.end(); ++locator) {
-        if (locator->kind == LOCATOR_KIND_SHM) return Transport::shared_memory;
+        if (locator->kind == fastdds::shared_memory_locator) return Transport::shared_memory;
     }
     return Transport::udp;
 }
@@ -107,7 +106,7 @@ public:
     {
         if (fastdds::is_ros2(topic_.type)) fastdds::ros2_to_vendor(topic_.type, message, sample_);
         else std::memcpy(sample_, message, topic_.size);
-        const bool taken = writer_->write(sample_);
+        const bool taken = fastdds::is_ok(writer_->write(sample_));
         if (!taken) ++refused_;
         return taken;
     }
@@ -164,7 +163,7 @@ public:
     bool take(void* message) override
     {
         dds::SampleInfo info;
-        while (reader_->take_next_sample(sample_, &info) == ReturnCode_t::RETCODE_OK) {
+        while (fastdds::is_ok(reader_->take_next_sample(sample_, &info))) {
             if (!info.valid_data) continue;
             writer_ = info.publication_handle;
             if (fastdds::is_ros2(topic_.type)) fastdds::ros2_from_vendor(topic_.type, sample_, message);
@@ -257,10 +256,10 @@ private:
         apply(topic.qos, settings_, qos);
         qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
         // The default heartbeat of 3 s leaves a Cyclone reader that matched late without its history.
-        qos.reliable_writer_qos().times.heartbeatPeriod = seconds(heartbeat_s(settings_));
-        qos.reliable_writer_qos().times.nackResponseDelay = seconds(0);
-        qos.reliable_writer_qos().times.nackSupressionDuration = seconds(repair_pause_s(settings_));
-        qos.reliable_writer_qos().times.initialHeartbeatDelay = seconds(0);
+        fastdds::heartbeat_period(qos) = seconds(heartbeat_s(settings_));
+        fastdds::nack_response_delay(qos) = seconds(0);
+        fastdds::nack_suppression_duration(qos) = seconds(repair_pause_s(settings_));
+        fastdds::initial_heartbeat_delay(qos) = seconds(0);
         if (topic.qos.exclusive) {
             qos.ownership_strength().value = static_cast<std::uint32_t>(options.strength);
             qos.liveliness().kind = dds::MANUAL_BY_TOPIC_LIVELINESS_QOS;
@@ -277,7 +276,7 @@ private:
     {
         dds::DataReaderQos qos = subscriber_->get_default_datareader_qos();
         apply(topic.qos, settings_, qos);
-        qos.reliable_reader_qos().times.heartbeatResponseDelay = seconds(0);
+        fastdds::heartbeat_response_delay(qos) = seconds(0);
         if (topic.qos.exclusive) {
             // Fast DDS monitors a writer by the reader's own lease alone. With the infinite default a dead owner stays the owner.
             qos.liveliness().kind = dds::MANUAL_BY_TOPIC_LIVELINESS_QOS;

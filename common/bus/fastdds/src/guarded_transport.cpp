@@ -3,17 +3,13 @@
 #include "foreign_acknacks.hpp"
 #include "rtps_guard.hpp"
 
-#include <fastdds/rtps/network/SenderResource.h>
-#include <fastdds/rtps/transport/ChainingTransport.h>
-#include <fastdds/rtps/transport/TransportReceiverInterface.h>
 #include <set>
 
 namespace quorient::bus::fastdds {
 
-namespace rtps = eprosima::fastdds::rtps;
-using eprosima::fastrtps::rtps::Locator_t;
-using eprosima::fastrtps::rtps::LocatorsIterator;
-using eprosima::fastrtps::rtps::octet;
+using wire::Locator_t;
+using wire::LocatorsIterator;
+using wire::octet;
 
 namespace {
 
@@ -58,8 +54,8 @@ public:
 
     rtps::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
 
-    bool send(eprosima::fastrtps::rtps::SenderResource* below, const octet* buffer, std::uint32_t size, LocatorsIterator* begin,
-              LocatorsIterator* end, const std::chrono::steady_clock::time_point& timeout) override
+    bool send(SenderResource* below, Outgoing datagram, std::uint32_t size, LocatorsIterator* begin, LocatorsIterator* end,
+              const std::chrono::steady_clock::time_point& timeout) override
     {
         if (!descriptor_.listening->load(std::memory_order_relaxed)) return true;
         const auto announce = [this](const Locator_t& locator) { know(locator); };
@@ -67,7 +63,7 @@ public:
         Announcing last{*end, announce};
         LocatorsIterator* from = &first;
         LocatorsIterator* to = &last;
-        return below->send(buffer, size, from, to, timeout);
+        return below->send(datagram, size, from, to, timeout);
     }
 
     void receive(rtps::TransportReceiverInterface* above, const octet* buffer, std::uint32_t size, const Locator_t& local,

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
+#include "version.hpp"
+
 #include <atomic>
 #include <memory>
 
@@ -12,7 +13,7 @@ using Listening = std::shared_ptr<std::atomic<bool>>;
 /// A transport around another one. Inwards it passes only sound RTPS datagrams (rtps_guard.hpp), with ACKNACKs in the form that Fast DDS
 /// expects (foreign_acknacks.hpp). Outwards it passes nothing before the process listens. Fast DDS 2.9.1 announces itself a moment too
 /// early: the immediate answer of a Cyclone DDS node is then lost, and its next one comes 1 s later.
-std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> guarded(
-    std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> transport, Listening listening);
+std::shared_ptr<rtps::TransportDescriptorInterface> guarded(
+    std::shared_ptr<rtps::TransportDescriptorInterface> transport, Listening listening);
 
 }  // namespace quorient::bus::fastdds

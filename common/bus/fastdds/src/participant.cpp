@@ -5,9 +5,6 @@
 #include "quorient/bus/roudi.hpp"
 #include "security.hpp"
 
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
 #include <fmt/format.h>
 #include <unistd.h>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -15,30 +12,27 @@
 
 namespace quorient::bus::fastdds {
 
-namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastdds::rtps;
-
 namespace {
 
 /// One participant's share, generously: its segment of 512 KiB, its ports, and the ports of its peers.
 constexpr std::uintmax_t shared_memory_needed = 4 << 20;
 
 /// Where the participants of an address listen for discovery [RTPS 9.6.1.1]: participant p at 7400 + 250 domain + 10 + 2 p.
-void add_peer(const std::string& address, const Settings& settings, eprosima::fastrtps::rtps::LocatorList_t& peers)
+void add_peer(const std::string& address, const Settings& settings, wire::LocatorList_t& peers)
 {
     for (std::uint32_t participant = 0; participant < settings.participants_per_host; ++participant) {
-        eprosima::fastrtps::rtps::Locator_t locator;
-        eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, address);
+        wire::Locator_t locator;
+        wire::IPLocator::setIPv4(locator, address);
         locator.port = 7400 + 250 * settings.domain + 10 + 2 * participant;
         peers.push_back(locator);
     }
 }
 
 /// Multicast discovery continues beside the list.
-void add_multicast(std::uint32_t domain, eprosima::fastrtps::rtps::LocatorList_t& peers)
+void add_multicast(std::uint32_t domain, wire::LocatorList_t& peers)
 {
-    eprosima::fastrtps::rtps::Locator_t locator;
-    eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, "239.255.0.1");
+    wire::Locator_t locator;
+    wire::IPLocator::setIPv4(locator, "239.255.0.1");
     locator.port = 7400 + 250 * domain;
     peers.push_back(locator);
 }
@@ -48,8 +42,8 @@ void add_multicast(std::uint32_t domain, eprosima::fastrtps::rtps::LocatorList_t
 void announce_in_order(dds::WireProtocolConfigQos& wire)
 {
     for (const auto& address : own_addresses()) {
-        eprosima::fastrtps::rtps::Locator_t locator;
-        eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, address);
+        wire::Locator_t locator;
+        wire::IPLocator::setIPv4(locator, address);
         wire.builtin.metatrafficUnicastLocatorList.push_back(locator);
         wire.default_unicast_locator_list.push_back(locator);
     }
@@ -79,7 +73,7 @@ void add_transports(const Settings& settings, Listening listening, dds::Transpor
 
 }  // namespace
 
-eprosima::fastrtps::Duration_t seconds(double s)
+Duration seconds(double s)
 {
     return {static_cast<std::int32_t>(s), static_cast<std::uint32_t>((s - static_cast<std::int32_t>(s)) * 1e9)};
 }

@@ -2,16 +2,16 @@
 
 #include "peers.hpp"
 #include "quorient/bus/settings.hpp"
+#include "version.hpp"
 
 #include <string>
 #include <tl/expected.hpp>
 
-#include <fastdds/rtps/common/Time_t.h>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 
 namespace quorient::bus::fastdds {
 
-eprosima::fastrtps::Duration_t seconds(double s);
+Duration seconds(double s);
 
 bool shares_memory(const Settings& settings);
 
@@ -21,6 +21,6 @@ tl::expected<Settings, std::string> with_room_in_shared_memory(Settings settings
 
 /// A participant with the transports, announced addresses, peers and discovery periods of the settings.
 /// @param peers  receives the other participants; must outlive this one. @returns null if the domain cannot be joined.
-eprosima::fastdds::dds::DomainParticipant* join(const Settings& settings, Peers& peers);
+dds::DomainParticipant* join(const Settings& settings, Peers& peers);
 
 }  // namespace quorient::bus::fastdds

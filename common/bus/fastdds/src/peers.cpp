@@ -5,38 +5,30 @@
 
 namespace quorient::bus::fastdds {
 
-using eprosima::fastrtps::rtps::GUID_t;
-using eprosima::fastrtps::rtps::ParticipantAuthenticationInfo;
-using eprosima::fastrtps::rtps::ParticipantDiscoveryInfo;
-
 namespace {
 
-GuidPrefix prefix_of(const GUID_t& whole)
+GuidPrefix plain(const wire::GuidPrefix_t& prefix)
 {
     GuidPrefix guid{};
-    std::copy_n(whole.guidPrefix.value, guid.size(), guid.begin());
+    std::copy_n(prefix.value, guid.size(), guid.begin());
     return guid;
 }
 
 }  // namespace
 
-void Peers::on_participant_discovery(eprosima::fastdds::dds::DomainParticipant*, ParticipantDiscoveryInfo&& discovered)
+void Peers::on_participant(const SeenParticipant& participant)
 {
-    const auto guid = prefix_of(discovered.info.m_guid);
-    const std::string name = discovered.info.m_participantName.c_str();
-    const bool gone = discovered.status == ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
-                      discovered.status == ParticipantDiscoveryInfo::DROPPED_PARTICIPANT;
-    if (secured_ && !gone && discovered.info.security_attributes_ == 0)
-        refusals_.add(fmt::format("refuses '{}': it has no certificate", name));
+    if (secured_ && !participant.gone && participant.unsecured)
+        refusals_.add(fmt::format("refuses '{}': it has no certificate", participant.name));
     const std::lock_guard lock{mutex_};
-    if (gone) names_.erase(guid);
-    else names_[guid] = name;
+    if (participant.gone) names_.erase(plain(participant.guid));
+    else names_[plain(participant.guid)] = participant.name;
 }
 
-void Peers::onParticipantAuthentication(eprosima::fastdds::dds::DomainParticipant*, ParticipantAuthenticationInfo&& info)
+void Peers::onParticipantAuthentication(dds::DomainParticipant*, wire::ParticipantAuthenticationInfo&& info)
 {
-    if (info.status == ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT)
-        refusals_.add(fmt::format("refuses '{}': its certificate is not valid, or not its own", sender(prefix_of(info.guid)).name));
+    if (info.status == wire::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT)
+        refusals_.add(fmt::format("refuses '{}': its certificate is not valid, or not its own", sender(plain(info.guid.guidPrefix)).name));
 }
 
 Sender Peers::sender(const GuidPrefix& guid) const

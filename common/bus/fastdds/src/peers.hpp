@@ -2,9 +2,8 @@
 
 #include "quorient/bus/refusals.hpp"
 #include "quorient/bus/sender.hpp"
+#include "version.hpp"
 
-#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <map>
 #include <mutex>
 #include <string>
@@ -12,7 +11,7 @@
 namespace quorient::bus::fastdds {
 
 /// The other participants, by the names that they announce. Fast DDS calls it from its own threads.
-class Peers final : public eprosima::fastdds::dds::DomainParticipantListener {
+class Peers final : public ParticipantListener {
 public:
     explicit Peers(bool secured) : secured_(secured) {}
 
@@ -20,10 +19,8 @@ public:
     std::vector<std::string> refusals() { return refusals_.take(); }
 
 private:
-    void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant*,
-                                  eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
-    void onParticipantAuthentication(eprosima::fastdds::dds::DomainParticipant*,
-                                     eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
+    void on_participant(const SeenParticipant& participant) override;
+    void onParticipantAuthentication(dds::DomainParticipant*, wire::ParticipantAuthenticationInfo&& info) override;
 
     bool secured_;
     mutable std::mutex mutex_;

@@ -2,7 +2,7 @@
 
 #include "quorient/bus/ros2.hpp"
 
-#include "ros2_msgsPubSubTypes.h"
+#include "ros2_msgsPubSubTypes.hpp"
 #include "tolerant_type.hpp"
 
 #include <algorithm>

@@ -8,8 +8,6 @@ namespace quorient::bus::fastdds {
 
 namespace {
 
-namespace dds = eprosima::fastdds::dds;
-
 /// Reads the library's log: no interface reports these refusals.
 class SecurityLog final : public dds::LogConsumer {
 public:
@@ -37,7 +35,7 @@ Refusals& library_refusals()
     return refusals;
 }
 
-void secure(eprosima::fastrtps::rtps::PropertyPolicy& participant, const SecurityFiles& files)
+void secure(wire::PropertyPolicy& participant, const SecurityFiles& files)
 {
     const auto set = [&](const std::string& name, const std::string& value) { participant.properties().emplace_back(name, value); };
     set("dds.sec.auth.plugin", "builtin.PKI-DH");

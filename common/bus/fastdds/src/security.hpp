@@ -2,13 +2,12 @@
 
 #include "quorient/bus/refusals.hpp"
 #include "quorient/bus/security.hpp"
-
-#include <fastdds/rtps/attributes/PropertyPolicy.h>
+#include "version.hpp"
 
 namespace quorient::bus::fastdds {
 
 /// Makes a participant's properties ask for DDS Security with these files.
-void secure(eprosima::fastrtps::rtps::PropertyPolicy& participant, const SecurityFiles& files);
+void secure(wire::PropertyPolicy& participant, const SecurityFiles& files);
 
 /// The refusals in the library's log, for all participants of this process.
 Refusals& library_refusals();

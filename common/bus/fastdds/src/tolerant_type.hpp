@@ -1,7 +1,8 @@
 #pragma once
 
+#include "version.hpp"
+
 #include <fastcdr/exceptions/Exception.h>
-#include <fastdds/dds/topic/TypeSupport.hpp>
 
 namespace quorient::bus::fastdds {
 
@@ -10,7 +11,7 @@ namespace quorient::bus::fastdds {
 template <class PubSubType>
 class TolerantType final : public PubSubType {
 public:
-    bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* sample) override
+    bool deserialize(PayloadParameter payload, void* sample) override
     {
         try {
             return PubSubType::deserialize(payload, sample);

@@ -1,6 +1,6 @@
 #include "types.hpp"
 
-#include "quorient_msgsPubSubTypes.h"
+#include "quorient_msgsPubSubTypes.hpp"
 #include "ros2.hpp"
 #include "tolerant_type.hpp"
 

@@ -1,13 +1,11 @@
 // An endpoint may listen elsewhere than its node says: Fast DDS 2.9.1 as packaged aborts the process that first sends there.
 
 #include "../src/types.hpp"
+#include "../src/version.hpp"
 #include "quorient/bus/bus.hpp"
 #include "quorient/bus/fastdds_bus.hpp"
 #include "quorient/bus/topics.hpp"
 
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
-#include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 #include <chrono>
@@ -22,9 +20,9 @@ namespace quorient::bus {
 
 namespace {
 
-namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastdds::rtps;
-using eprosima::fastrtps::types::ReturnCode_t;
+namespace dds = fastdds::dds;
+namespace rtps = fastdds::rtps;
+namespace wire = fastdds::wire;
 
 /// A plain node of the vendor on loopback, whose reader of frames listens at addresses that its participant does not announce.
 class ForeignReader {
@@ -59,14 +57,14 @@ public:
     bool take()
     {
         dds::SampleInfo info;
-        return reader_->take_next_sample(sample_, &info) == ReturnCode_t::RETCODE_OK && info.valid_data;
+        return fastdds::is_ok(reader_->take_next_sample(sample_, &info)) && info.valid_data;
     }
 
 private:
-    static eprosima::fastrtps::rtps::Locator_t address(const char* host, std::uint32_t port)
+    static wire::Locator_t address(const char* host, std::uint32_t port)
     {
-        eprosima::fastrtps::rtps::Locator_t locator;
-        eprosima::fastrtps::rtps::IPLocator::setIPv4(locator, host);
+        wire::Locator_t locator;
+        wire::IPLocator::setIPv4(locator, host);
         locator.port = port;
         return locator;
     }
@@ -80,9 +78,7 @@ private:
 TEST(ForeignAddress, of_readers_that_their_nodes_did_not_announce_ends_nobody_and_is_served)
 {
     // Within a process Fast DDS would hand samples over without a transport.
-    eprosima::fastrtps::LibrarySettingsAttributes through_transports;
-    through_transports.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
-    eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(through_transports);
+    fastdds::deliver_by_transports();
 
     const std::uint32_t domain = 120 + static_cast<std::uint32_t>(::getpid()) % 100;
     Settings settings;

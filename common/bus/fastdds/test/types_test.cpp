@@ -1,8 +1,9 @@
 // The generated classes hide their members; their accessors show the members' places.
 
 #include "../src/types.hpp"
+#include "../src/version.hpp"
 #include "quorient/messages/fields.hpp"
-#include "quorient_msgs.h"
+#include "quorient_msgs.hpp"
 
 #include <gtest/gtest.h>
 #include <cstddef>
@@ -41,7 +42,7 @@ TEST(FastTypes, are_plain_and_bounded)
 {
     for (std::size_t type = 0; type < type_count; ++type) {
         const auto support = fastdds::type_support_of(static_cast<TypeId>(type));
-        EXPECT_TRUE(support.is_plain()) << support.get_type_name();
+        EXPECT_TRUE(fastdds::is_plain(support)) << support.get_type_name();
         EXPECT_TRUE(support.is_bounded()) << support.get_type_name();
     }
 }
@@ -55,7 +56,7 @@ TEST(FastTypes, have_the_size_of_their_cdr_form)
         auto support = fastdds::type_support_of(static_cast<TypeId>(type));
         void* sample = support.create_data();
         constexpr std::size_t encapsulation = 4;
-        EXPECT_EQ(support.get_serialized_size_provider(sample)(), plain_sizes[type] + encapsulation) << support.get_type_name();
+        EXPECT_EQ(fastdds::serialized_size(support, sample), plain_sizes[type] + encapsulation) << support.get_type_name();
         support.delete_data(sample);
     }
 }

@@ -1,0 +1,28 @@
+# Finds Fast DDS and its generator. Release 2 (Debian 12) is called fastrtps, and its generator writes .h; release 3 (Debian 13) writes
+# .hpp. Sources include .hpp, so release 2 gets headers of that name too.
+find_package(fastcdr REQUIRED)
+find_package(fastrtps QUIET)
+if(fastrtps_FOUND)
+  set(FASTDDS_LIBRARY fastrtps)
+else()
+  find_package(fastdds REQUIRED)
+  set(FASTDDS_LIBRARY fastdds)
+endif()
+find_program(FASTDDSGEN fastddsgen REQUIRED)
+
+# fastdds_types(VARIABLE FOLDER FILE.idl): generates the types into the folder. VARIABLE: their sources.
+function(fastdds_types variable folder idl)
+  get_filename_component(name ${idl} NAME_WE)
+  if(FASTDDS_LIBRARY STREQUAL fastrtps)
+    set(files ${name}.cxx ${name}PubSubTypes.cxx ${name}.h ${name}PubSubTypes.h)
+    foreach(header ${name} ${name}PubSubTypes)
+      file(CONFIGURE OUTPUT ${folder}/${header}.hpp CONTENT "#include \"${header}.h\"\n")
+    endforeach()
+  else()
+    set(files ${name}PubSubTypes.cxx ${name}.hpp ${name}PubSubTypes.hpp ${name}CdrAux.hpp ${name}CdrAux.ipp)
+    set(options -flat-output-dir -no-typeobjectsupport)
+  endif()
+  list(TRANSFORM files PREPEND ${folder}/)
+  add_custom_command(OUTPUT ${files} COMMAND ${FASTDDSGEN} -replace -cs ${options} -d ${folder} ${idl} DEPENDS ${idl} VERBATIM)
+  set(${variable} ${files} PARENT_SCOPE)
+endfunction()
