@@ -44,7 +44,7 @@ public:
     }
 
 private:
-    /// "/dev/shm/sem.fastrtps_port7410_mutex" guards "/dev/shm/fastrtps_port7410".
+    /// "/dev/shm/sem.fastrtps_port7410_mutex" guards "/dev/shm/fastrtps_port7410"; in Fast DDS 3 the names begin with "fastdds".
     static std::string guarded_by(const fs::path& semaphore)
     {
         constexpr std::string_view prefix = "sem.", suffix = "_mutex";
@@ -110,7 +110,7 @@ std::set<fs::path> leftovers()
     collect(
         "/dev/shm",
         [](const std::string& name) {
-            return starts_with_any(name, {"fastrtps_", "fast_datasharing_", "sem.fastrtps_"});
+            return starts_with_any(name, {"fastrtps_", "fastdds_", "fast_datasharing_", "sem.fastrtps_", "sem.fastdds_"});
         },
         found);
     collect(
