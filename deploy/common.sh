@@ -18,12 +18,11 @@ as_root() {
 
 # Installs the packages of deploy/packages.txt for this machine's release that are missing, and nothing when none is.
 install_packages() {
-    local missing=() package release
+    local missing release
     release=$(own_release)
     is_supported "$release" || fail "this machine runs '$release'; deploy/packages.txt knows the packages of $supported_releases"
-    while read -r package; do
-        dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
-    done < <(packages_of "$release")
+    mapfile -t missing < <(LC_ALL=C comm -23 <(packages_of "$release" | LC_ALL=C sort) \
+        <(dpkg-query -W -f '${db:Status-Status} ${Package}\n' | sed -n 's/^installed //p' | LC_ALL=C sort -u))
     [ ${#missing[@]} -eq 0 ] && return
     say "installing ${#missing[@]} Debian packages: ${missing[*]}"
     as_root apt-get update -qq || fail "apt-get update: is the machine's package source reachable?"

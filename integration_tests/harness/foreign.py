@@ -43,6 +43,21 @@ def example(program):
     return build(installed_idl() / "examples" / program, program)
 
 
+# A Debian release, in whose root the consumers are built and run; else they are this machine's.
+CONSUMERS_RELEASE = os.environ.get("QUORIENT_CONSUMERS_RELEASE")
+
+
+@functools.cache
+def consumer(program):
+    """@returns the command that starts the example of that name."""
+    if not CONSUMERS_RELEASE:
+        return (example(program),)
+    in_root = (INTEROP.parent.parent / "deploy/release-root", "--host-network", CONSUMERS_RELEASE)
+    idl = "/quorient/idl/quorient_msgs.idl"
+    run(*in_root, "sh", "-c", f"cmake -S idl/examples/{program} -B build/{program} -DQUORIENT_IDL={idl} && cmake --build build/{program}")
+    return (*in_root, f"build/{program}/{program}")
+
+
 def conjugate(q):
     return [q[0], -q[1], -q[2], -q[3]]
 

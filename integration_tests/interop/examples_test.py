@@ -7,7 +7,7 @@ import signal
 import unittest
 from statistics import mode
 
-from integration_tests.harness.foreign import BIN, InteropTest, angle, conjugate, example, product
+from integration_tests.harness.foreign import BIN, InteropTest, angle, conjugate, consumer, example, product
 from integration_tests.harness.processes import CONFIGURATIONS
 
 LINE = re.compile(r"(\d+) (\d+) (\d+) voter (\d+) level (\d+) mode (\d+) q (\S+) (\S+) (\S+) (\S+) sigma (\S+) rad")
@@ -51,9 +51,15 @@ FOUND_WITHIN_FRAMES = 400  # 2 s: twice what the vendors take to find each other
 class Examples(InteropTest):
     CONSUMERS = ("consumer_cyclonedds", "consumer_fastdds")
 
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        for name in cls.CONSUMERS:
+            consumer(name)  # built before any frame flows
+
     def start_consumers(self, keys=None):
         """@param keys  directory with an identity for each consumer, named as itself"""
-        return {name: self.start_logged(name, example(name), self.domain, *((keys, name) if keys else ())) for name in self.CONSUMERS}
+        return {name: self.start_logged(name, *consumer(name), self.domain, *((keys, name) if keys else ())) for name in self.CONSUMERS}
 
     def stop(self, consumers):
         for name, (process, _) in consumers.items():
