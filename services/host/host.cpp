@@ -4,6 +4,8 @@
 #include "quorient/runtime/realtime.hpp"
 #include "quorient/runtime/signals.hpp"
 
+#include <cassert>
+
 namespace quorient::host {
 namespace {
 
@@ -15,7 +17,7 @@ int run_role(int argc, char** argv, const Role& role)
     if (!options) return options.error().exit_code;
 
     const auto system =
-        system::load(options->system_file, {.dds = options->dds, .domain = options->domain, .process = options->name, .set = options->set});
+        system::load(options->system_file, {.dds = options->dds, .domain = options->domain, .processes = {options->name}, .set = options->set});
     if (!system) return runtime::report(system.error());
 
     const auto process = role.find(*system, options->name);
@@ -24,17 +26,25 @@ int run_role(int argc, char** argv, const Role& role)
     const auto bus = bus::open(process->settings.bus);
     if (!bus) return runtime::report(bus.error());
 
+    return serve(**bus, {*process});
+}
+
+}  // namespace
+
+int serve(bus::Bus& bus, const std::vector<Process>& processes)
+{
+    assert(!processes.empty());
+    const auto& settings = processes.front().settings;
     const runtime::SystemClock clock;
-    runtime::EventLoop loop{**bus, clock, runtime::termination_requested()};
-    loop.spin(process->settings.spin);
-    const auto service = process->start(**bus, loop);
-    runtime::ask_for_realtime(process->settings.realtime);
+    runtime::EventLoop loop{bus, clock, runtime::termination_requested()};
+    loop.spin(settings.spin);
+    std::vector<std::unique_ptr<Hosted>> services;
+    for (const auto& process : processes) services.push_back(process.start(bus, loop));
+    runtime::ask_for_realtime(settings.realtime);
     const int exit_code = loop.run();
     runtime::leave_within(longest_leaving_s, exit_code);
     return exit_code;
 }
-
-}  // namespace
 
 int run(int argc, char** argv, const Role& role)
 {

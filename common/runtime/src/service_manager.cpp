@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 namespace quorient::runtime {
 
@@ -33,6 +34,35 @@ std::int64_t watchdog_ns()
 
 }  // namespace
 
+/// One service of this process, as far as the manager is concerned.
+struct ServiceManager::Service {
+    bool ready = false;
+    bool handled = false;  ///< a frame, since the watchdog was fed last
+
+    static std::vector<std::weak_ptr<Service>>& all()
+    {
+        static std::vector<std::weak_ptr<Service>> services;
+        return services;
+    }
+
+    /// Whether it holds for each service that is there.
+    static bool each(bool Service::*state)
+    {
+        return std::ranges::all_of(all(), [state](const auto& known) {
+            const auto service = known.lock();
+            return !service || (*service).*state;
+        });
+    }
+
+    static void forget_handled()
+    {
+        for (const auto& known : all())
+            if (const auto service = known.lock()) service->handled = false;
+    }
+
+    static inline std::int64_t fed_ns = 0;
+};
+
 std::optional<ServiceManager> ServiceManager::from_environment()
 {
     const char* path = std::getenv("NOTIFY_SOCKET");
@@ -49,13 +79,19 @@ std::optional<ServiceManager> ServiceManager::from_environment()
     return manager;
 }
 
+ServiceManager::ServiceManager(int socket, std::int64_t watchdog_ns)
+    : socket_(socket), watchdog_ns_(watchdog_ns), service_(std::make_shared<Service>())
+{
+    Service::all().push_back(service_);
+}
+
 ServiceManager::~ServiceManager()
 {
     if (socket_ >= 0) ::close(socket_);
 }
 
 ServiceManager::ServiceManager(ServiceManager&& other) noexcept
-    : socket_(std::exchange(other.socket_, -1)), watchdog_ns_(other.watchdog_ns_), fed_ns_(other.fed_ns_), told_ready_(other.told_ready_)
+    : socket_(std::exchange(other.socket_, -1)), watchdog_ns_(other.watchdog_ns_), service_(std::move(other.service_))
 {
 }
 
@@ -63,15 +99,14 @@ ServiceManager& ServiceManager::operator=(ServiceManager&& other) noexcept
 {
     std::swap(socket_, other.socket_);
     watchdog_ns_ = other.watchdog_ns_;
-    fed_ns_ = other.fed_ns_;
-    told_ready_ = other.told_ready_;
+    service_ = std::move(other.service_);
     return *this;
 }
 
 void ServiceManager::ready()
 {
-    if (std::exchange(told_ready_, true)) return;
-    send("READY=1");
+    if (std::exchange(service_->ready, true)) return;
+    if (Service::each(&Service::ready)) send("READY=1");
 }
 
 void ServiceManager::stopping()
@@ -81,8 +116,11 @@ void ServiceManager::stopping()
 
 void ServiceManager::frame_handled(std::int64_t steady_ns)
 {
-    if (watchdog_ns_ <= 0 || steady_ns - fed_ns_ < std::min(watchdog_ns_ / 2, longest_feeding_ns)) return;
-    fed_ns_ = steady_ns;
+    service_->handled = true;
+    if (watchdog_ns_ <= 0 || steady_ns - Service::fed_ns < std::min(watchdog_ns_ / 2, longest_feeding_ns)) return;
+    if (!Service::each(&Service::handled)) return;
+    Service::forget_handled();
+    Service::fed_ns = steady_ns;
     send("WATCHDOG=1");
 }
 

@@ -112,7 +112,7 @@ void list_consumers(System& system)
 /// What the bus finds wrong with a process of this host, at the process's own key or at the one of the whole file.
 void check_bus(const ProcessSettings& process, const std::string& section, const Overrides& overrides, Report& report)
 {
-    if (overrides.any_host || (!overrides.process.empty() && overrides.process != process.node.name)) return;
+    if (overrides.any_host || !overrides.concerns(process.node.name)) return;
     for (const auto& finding : bus::findings(process.bus)) {
         const auto own = fmt::format("{}.{}", section, finding.key);
         const std::string whole{finding.key};
@@ -161,9 +161,11 @@ System build(const std::string& name, File& file, const Overrides& overrides, Re
     system.monitor.bus.transport = Transport::udp;
     if (!system.voters.empty()) system.monitor.bus.voted_lease_s = system.voters.front().voting.lease_s;
     build_monitor(file, system);
+    system.compositions = file.compositions;
     build_security(system, overrides, report);
 
     check_names(file, report);
+    check_compositions(system, report);
     check_algorithms(system, report);
     check_buses(system, overrides, report);
     check_expectations(system, report);

@@ -42,6 +42,9 @@ void build_security(System& system, const Overrides& overrides, Report& report);
 /// Names that are taken twice, cannot be names of files, or do not fit into messages.
 void check_names(const File& file, Report& report);
 
+/// Compositions whose processes cannot run in one, and names that stand in two.
+void check_compositions(const System& system, Report& report);
+
 /// What a unit's methods, observers, integrators and voters refuse.
 void check_algorithms(const System& system, Report& report);
 

@@ -59,7 +59,7 @@ void build_security(System& system, const Overrides& overrides, Report& report)
     if (!overrides.joins || overrides.any_host) return;
     Identities identities(system, report);
     const auto find = [&](ProcessSettings& process, const std::string& section) {
-        if (overrides.process.empty() || overrides.process == process.node.name) identities.find(process, section, process.node.name);
+        if (overrides.concerns(process.node.name)) identities.find(process, section, process.node.name);
     };
     find(system.sensor.process, "sensor");
     for (std::size_t i = 0; i < system.lanes.size(); ++i) {
@@ -68,7 +68,7 @@ void build_security(System& system, const Overrides& overrides, Report& report)
     }
     for (std::size_t i = 0; i < system.voters.size(); ++i) find(system.voters[i].process, fmt::format("voters[{}]", i));
     find(system.monitor, {});
-    if (auto& web = system.web_monitor; web && (overrides.process.empty() || overrides.process == web->process.node.name))
+    if (auto& web = system.web_monitor; web && overrides.concerns(web->process.node.name))
         identities.find(web->process, "monitor", web->allow_orders ? operator_name : system.monitor.node.name);
 }
 

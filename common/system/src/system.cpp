@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <algorithm>
 
 namespace quorient::system {
 
@@ -62,6 +63,18 @@ std::vector<const ProcessSettings*> System::processes() const
     if (web_monitor) all.push_back(&web_monitor->process);
     all.push_back(&sensor.process);
     return all;
+}
+
+const ProcessSettings* System::process(std::string_view wanted) const
+{
+    for (const auto* one : processes())
+        if (one->node.name == wanted) return one;
+    return nullptr;
+}
+
+bool Overrides::concerns(std::string_view process) const
+{
+    return processes.empty() || std::ranges::find(processes, process) != processes.end();
 }
 
 tl::expected<DetectorProcess, std::string> System::detector(std::string_view process) const

@@ -31,6 +31,7 @@ const std::map<std::string, std::vector<Wrong>> wrong_values{
     {"B", {{"1"}, {"[[1], [x]]"}}},
     {"C", {{"1"}, {"[[1, 2], x]"}}},
     {"poles", {{"-3"}, {"[-3, -4]"}, {"[[x]]"}}},
+    {"compose", {{"fdi-a"}, {"[fdi-a]", "[0]"}, {"[[fdi-a, [attitude-a]]]", "[0]"}}},
     {"file", {{"{a: 1}"}, {"[]"}}},
     {"calibration", {{"[a]"}}},
 };

@@ -10,7 +10,7 @@ namespace {
 
 tl::expected<system::System, std::string> loaded(const std::vector<std::string>& set)
 {
-    return system::load(QUORIENT_SOURCE_DIR "/deploy/configurations/demo.yaml", {.dds = {}, .domain = {}, .process = {}, .set = set});
+    return system::load(QUORIENT_SOURCE_DIR "/deploy/configurations/demo.yaml", {.dds = {}, .domain = {}, .processes = {}, .set = set});
 }
 
 std::string refusal(const std::vector<std::string>& set)

@@ -78,10 +78,10 @@ TEST(SystemFile, reports_what_the_bus_refuses_at_the_key_that_says_so)
 TEST(SystemFile, may_name_networks_of_other_hosts)
 {
     const auto text = with(simulation_file, "name: b,", "name: b, interface: nosuch0,");
-    EXPECT_EQ(refusal(text, {.process = "fdi-a"}), "accepted");
+    EXPECT_EQ(refusal(text, {.processes = {"fdi-a"}}), "accepted");
     EXPECT_EQ(refusal(text, {.any_host = true}), "accepted");
-    EXPECT_THAT(refusal(text, {.process = "fdi-b"}), HasSubstr("nosuch0"));
-    EXPECT_THAT(refusal(text, {.process = "attitude-b"}), HasSubstr("nosuch0"));
+    EXPECT_THAT(refusal(text, {.processes = {"fdi-b"}}), HasSubstr("nosuch0"));
+    EXPECT_THAT(refusal(text, {.processes = {"attitude-b"}}), HasSubstr("nosuch0"));
 }
 
 TEST(SystemFile, sets_every_setting_of_voting_and_integration)

@@ -15,7 +15,7 @@ const std::string configuration = QUORIENT_SOURCE_DIR "/deploy/configurations/ve
 
 tl::expected<system::System, std::string> loaded(const std::vector<std::string>& set)
 {
-    return system::load(configuration, {.dds = {}, .domain = {}, .process = "fdi-a", .set = set});
+    return system::load(configuration, {.dds = {}, .domain = {}, .processes = {"fdi-a"}, .set = set});
 }
 
 /// What the file is refused for when a value is another; "accepted" if it is not.
@@ -104,7 +104,7 @@ TEST(VesselFile, tells_every_mistake_at_once_with_its_place)
                            "lanes:\n"
                            "  - name: a\n"
                            "    detector: {poles: [[-3, 4]]}\n";
-    const auto system = system::load(file.string(), {.dds = {}, .domain = {}, .process = "sensor", .set = {}});
+    const auto system = system::load(file.string(), {.dds = {}, .domain = {}, .processes = {"sensor"}, .set = {}});
     std::filesystem::remove(file);
     ASSERT_FALSE(system);
     EXPECT_THAT(system.error(),

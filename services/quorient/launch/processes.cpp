@@ -47,9 +47,16 @@ Processes::~Processes()
     stop();
 }
 
-void Processes::add(std::string name, std::vector<std::string> command, std::string log_file, bool daemon)
+void Processes::add(std::string name, std::vector<std::string> members, std::vector<std::string> command, std::string log_file)
 {
-    children_.push_back({.name = std::move(name), .command = std::move(command), .log_file = std::move(log_file), .daemon = daemon});
+    children_.push_back(
+        {.name = std::move(name), .members = std::move(members), .command = std::move(command), .log_file = std::move(log_file)});
+}
+
+void Processes::add_daemon(std::string name, std::vector<std::string> command, std::string log_file)
+{
+    children_.push_back(
+        {.name = std::move(name), .members = {}, .command = std::move(command), .log_file = std::move(log_file), .daemon = true});
 }
 
 void Processes::add_arguments(const std::vector<std::string>& arguments)
@@ -113,6 +120,14 @@ void Processes::stop(Predicate chosen)
 const Child* Processes::find(const std::string& name) const
 {
     const auto found = std::find_if(children_.begin(), children_.end(), [&](const Child& child) { return child.name == name; });
+    return found == children_.end() ? nullptr : &*found;
+}
+
+const Child* Processes::find_member(const std::string& member) const
+{
+    const auto found = std::find_if(children_.begin(), children_.end(), [&](const Child& child) {
+        return std::find(child.members.begin(), child.members.end(), member) != child.members.end();
+    });
     return found == children_.end() ? nullptr : &*found;
 }
 

@@ -10,6 +10,7 @@ namespace quorient::launch {
 /// One child and what became of it.
 struct Child {
     std::string name;
+    std::vector<std::string> members;  ///< the processes of the system file that run in it
     std::vector<std::string> command;
     std::string log_file;
     bool daemon = false;  ///< serves the others: stopped after them, and not started again (what they share is gone with it)
@@ -26,7 +27,10 @@ public:
     ~Processes();
 
     /// Started again whenever it dies, unless it ended in order or with exit code 2.
-    void add(std::string name, std::vector<std::string> command, std::string log_file, bool daemon = false);
+    void add(std::string name, std::vector<std::string> members, std::vector<std::string> command, std::string log_file);
+
+    /// What serves the others: stopped after them, and not started again.
+    void add_daemon(std::string name, std::vector<std::string> command, std::string log_file);
 
     /// For every later start of those that are no daemons.
     void add_arguments(const std::vector<std::string>& arguments);
@@ -41,6 +45,9 @@ public:
     void stop();
 
     const Child* find(const std::string& name) const;
+
+    /// The child that a process of the system file runs in.
+    const Child* find_member(const std::string& member) const;
     const std::vector<Child>& all() const { return children_; }
 
 private:

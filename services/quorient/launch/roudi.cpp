@@ -38,8 +38,8 @@ std::string Roudi::start(const system::System& system, Processes& processes)
                 needed >> 20, bus::free_shared_memory() >> 20);
         const auto configuration = runtime::run_directory() / "roudi.toml";
         std::ofstream{configuration} << bus::roudi_configuration(endpoints, endpoints);
-        processes.add("roudi", {"/usr/bin/iox-roudi", "-c", configuration.string()}, (runtime::run_directory() / "roudi.log").string(),
-                      true);
+        processes.add_daemon("roudi", {"/usr/bin/iox-roudi", "-c", configuration.string()},
+                             (runtime::run_directory() / "roudi.log").string());
         processes.start();
     }
     const auto deadline = std::chrono::steady_clock::now() + patience;

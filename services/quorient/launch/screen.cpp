@@ -47,9 +47,9 @@ void Screen::draw(const Processes& processes)
     std::string text = fmt::format("{:.2f} s  {}\n{:<6}{:<12}{:<13}{:<18}{:<14}{}\n", run_.time_s(run_.newest_truth()), system_.name,
                                    "lane", "vendor", "state", "isolated", "error [rad]", "restarts");
     for (const auto& lane : run_.lanes()) {
-        const auto* detector = processes.find("fdi-" + lane.name);
-        const auto* integrator = processes.find("attitude-" + lane.name);
-        const int restarts = (detector ? detector->restarts : 0) + (integrator ? integrator->restarts : 0);
+        const auto* detector = processes.find_member("fdi-" + lane.name);
+        const auto* integrator = processes.find_member("attitude-" + lane.name);
+        const int restarts = (detector ? detector->restarts : 0) + (integrator && integrator != detector ? integrator->restarts : 0);
         text += fmt::format("{:<6}{:<12}{:<13}{:<18}{:<14}{}\n", lane.name, bus::to_string(lane.vendor), to_string(state_of(lane.verdict)),
                             lane.verdict.isolated_mask ? run_.names_of(lane.verdict.isolated_mask) : "-",
                             lane.errors.compared ? fmt::format("{:.2e}", lane.errors.final_rad) : "-", restarts);

@@ -89,7 +89,7 @@ void check(const CheckOptions& options)
     if (!options.key.empty()) return explain(options.key);
     if (options.system.file.empty()) fail("quorient check needs a system file, or --reference, or --key");
     auto overrides = options.system.overrides();
-    overrides.process = options.process;
+    if (!options.process.empty()) overrides.processes = {options.process};
     overrides.any_host = options.any_host;
     const auto judged = system::judge(options.system.file, overrides);
     const Problems problems = judged ? Trial(options.system.file, *judged).run() : judged.error();

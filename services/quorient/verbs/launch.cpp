@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -37,10 +38,13 @@ struct LaunchOptions {
     bool json = false;
 };
 
-/// A service's program and the name of its process in the system file.
+/// A child to start: one process of the system file, or a composition of several.
 struct Started {
     const char* service;
-    std::string name;
+    std::vector<std::string> names;
+
+    std::string name() const { return fmt::format("{}", fmt::join(names, "+")); }
+    bool has(std::string_view wanted) const { return std::ranges::find(names, wanted) != names.end(); }
 };
 
 /// Children leave heartbeats and logs; /run/quorient belongs to root.
@@ -77,22 +81,34 @@ const char* service_of(ServiceRole role)
     }
 }
 
-std::vector<Started> processes_of(const system::System& system)
+/// The names that run together with one, as far as they are wanted; itself alone where the file does not compose it.
+std::vector<std::string> together_with(const std::string& name, const system::System& system, const std::vector<std::string>& without)
 {
-    std::vector<Started> all;
-    for (const auto* process : system.processes()) all.push_back({service_of(process->node.role), process->node.name});
-    return all;
+    for (auto names : system.compositions) {
+        if (std::ranges::find(names, name) == names.end()) continue;
+        std::erase_if(names, [&](const std::string& one) { return std::ranges::find(without, one) != without.end(); });
+        return names;
+    }
+    return {name};
 }
 
-/// Those that this launch starts. Explains a name that the system does not have on stderr, and ends the verb.
+/// What this launch starts. Explains a name that the system does not have on stderr, and ends the verb.
 std::vector<Started> chosen_processes(const system::System& system, const std::vector<std::string>& without)
 {
-    auto chosen = processes_of(system);
     for (const auto& name : without) {
-        if (std::erase_if(chosen, [&](const Started& process) { return process.name == name; }) > 0) continue;
-        std::string known;
-        for (const auto& process : processes_of(system)) known += (known.empty() ? "" : ", ") + process.name;
-        fail(fmt::format("--without {}: the system has no such process; it has {}", name, known));
+        if (system.process(name)) continue;
+        std::vector<std::string> known;
+        for (const auto* process : system.processes()) known.push_back(process->node.name);
+        fail(fmt::format("--without {}: the system has no such process; it has {}", name, fmt::join(known, ", ")));
+    }
+    std::vector<Started> chosen;
+    for (const auto* process : system.processes()) {
+        const auto& name = process->node.name;
+        const bool left_out = std::ranges::find(without, name) != without.end();
+        const bool has_company = std::ranges::any_of(chosen, [&](const Started& started) { return started.has(name); });
+        if (left_out || has_company) continue;
+        auto names = together_with(name, system, without);
+        chosen.push_back({names.size() > 1 ? "quorient-run" : service_of(process->node.role), std::move(names)});
     }
     return chosen;
 }
@@ -100,12 +116,14 @@ std::vector<Started> chosen_processes(const system::System& system, const std::v
 void add_processes(const std::vector<Started>& chosen, const SystemOptions& options, launch::Processes& processes)
 {
     const auto run_directory = runtime::run_directory();
-    for (const auto& [service, name] : chosen) {
-        std::vector<std::string> command{program(service), options.file, "--name", name};
+    for (const auto& started : chosen) {
+        std::vector<std::string> command{program(started.service), options.file};
+        if (started.names.size() == 1) command.push_back("--name");
+        command.insert(command.end(), started.names.begin(), started.names.end());
         if (!options.dds.empty()) command.insert(command.end(), {"--dds", options.dds});
         if (options.domain) command.insert(command.end(), {"--domain", std::to_string(*options.domain)});
         for (const auto& assignment : options.assignments()) command.insert(command.end(), {"--set", assignment});
-        processes.add(name, std::move(command), (run_directory / (name + ".log")).string());
+        processes.add(started.name(), started.names, std::move(command), (run_directory / (started.name() + ".log")).string());
     }
 }
 
@@ -117,7 +135,8 @@ std::set<std::string> already_running(const std::vector<Started>& chosen, std::u
     auto statuses = bus.subscribe(bus::topics::status);
     std::set<std::string> running;
     const auto add = [&](std::uint32_t from_unit, std::string_view name) {
-        if (from_unit == unit && std::ranges::find(chosen, name, &Started::name) != chosen.end()) running.emplace(name);
+        if (from_unit == unit && std::ranges::any_of(chosen, [&](const Started& started) { return started.has(name); }))
+            running.emplace(name);
     };
     HealthEvent event;
     ServiceStatus status;
@@ -178,7 +197,7 @@ private:
         for (const auto& name : processes_.look(clock_.steady_ns())) {
             const auto& child = *processes_.find(name);
             if (child.daemon) continue;
-            if (name == system_.sensor.process.node.name && child.exit_code == 0) end.set(clock_.steady_ns() + linger_ns);
+            if (&child == processes_.find_member(system_.sensor.process.node.name) && child.exit_code == 0) end.set(clock_.steady_ns() + linger_ns);
             else if (child.exit_code != 0) tell_death(child);
         }
     }

@@ -17,6 +17,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace quorient::bus {
 
@@ -188,8 +189,9 @@ private:
 
 class CycloneReader final : public Reader {
 public:
-    CycloneReader(Entity reader, TypeId type, Transport asked, bool secured)
-        : reader_(std::move(reader)), type_(type), asked_(asked), secured_(secured)
+    /// @param skipped  handles of the writers whose samples are skipped; must outlive the reader
+    CycloneReader(Entity reader, TypeId type, Transport asked, bool secured, const std::vector<dds_instance_handle_t>* skipped)
+        : reader_(std::move(reader)), type_(type), asked_(asked), secured_(secured), skipped_(skipped)
     {
     }
 
@@ -199,7 +201,7 @@ public:
         dds_sample_info_t info{};
         void* samples[1] = {message};
         while (dds_take(reader_.handle(), samples, &info, 1, 1) == 1) {
-            if (!info.valid_data) continue;
+            if (!info.valid_data || is_skipped(info.publication_handle)) continue;
             writer_ = info.publication_handle;
             return true;
         }
@@ -219,17 +221,21 @@ public:
     Sender sender() override { return cyclonedds::sender_of(reader_.handle(), writer_, secured_); }
 
 private:
+    bool is_skipped(dds_instance_handle_t writer) const { return skipped_ && std::ranges::find(*skipped_, writer) != skipped_->end(); }
+
     Entity reader_;
     TypeId type_;
     Transport asked_;
     bool secured_;
+    const std::vector<dds_instance_handle_t>* skipped_;
     dds_instance_handle_t writer_ = 0;  ///< the writer of the sample taken last
 };
 
 class CycloneBus final : public Bus {
 public:
-    CycloneBus(Entity domain, Entity participant, const Settings& settings, bool shared)
+    CycloneBus(Entity domain, Entity participant, const Settings& settings, bool shared, OwnSamples own)
         : asked_(settings.transport),
+          own_(own),
           secured_(settings.security.has_value()),
           roudi_life_(shared ? roudi_life() : 0),
           domain_(std::move(domain)),
@@ -257,6 +263,7 @@ private:
         const auto qos = to_qos(topic.qos, &options, asked);
         auto writer = checked(dds_create_writer(participant_.handle(), topic_of(topic), qos.get(), nullptr), topic.name);
         if (dds_is_loan_available(writer.handle())) check_room(writer.handle(), topic);
+        if (skips_own(own_, topic)) skipped_.push_back(instance_of(writer));
         return std::make_unique<CycloneWriter>(std::move(writer), topic, asked);
     }
 
@@ -264,11 +271,21 @@ private:
     {
         const auto asked = asked_for(topic, asked_);
         const auto qos = to_qos(topic.qos, nullptr, asked);
+        const bool skips = skips_own(own_, topic);
+        // By iceoryx own samples still arrive, so the reader looks at each sample's writer, too.
+        if (skips) dds_qset_ignorelocal(qos.get(), DDS_IGNORELOCAL_PARTICIPANT);
         auto reader = checked(dds_create_reader(participant_.handle(), topic_of(topic), qos.get(), nullptr), topic.name);
         const auto condition = dds_create_readcondition(reader.handle(), DDS_ANY_STATE);
         if (condition < 0 || dds_waitset_attach(waitset_.handle(), condition, 0) < 0)
             throw Error(fmt::format("Cyclone DDS: {}: cannot wait for data", topic.name));
-        return std::make_unique<CycloneReader>(std::move(reader), topic.type, asked, secured_);
+        return std::make_unique<CycloneReader>(std::move(reader), topic.type, asked, secured_, skips ? &skipped_ : nullptr);
+    }
+
+    static dds_instance_handle_t instance_of(const Entity& entity)
+    {
+        dds_instance_handle_t handle = 0;
+        if (dds_get_instance_handle(entity.handle(), &handle) != DDS_RETCODE_OK) throw Error("Cyclone DDS: a writer has no handle");
+        return handle;
     }
 
     dds_entity_t topic_of(const TopicSpec& spec)
@@ -281,6 +298,8 @@ private:
     }
 
     Transport asked_;
+    OwnSamples own_;
+    std::vector<dds_instance_handle_t> skipped_;  ///< own writers whose samples come another way
     bool secured_;
     std::uint64_t roudi_life_;
     Entity domain_;  // outlives the participant, which takes everything it made with it
@@ -335,7 +354,7 @@ std::string configuration(const Settings& settings, bool shared)
 
 }  // namespace
 
-tl::expected<std::unique_ptr<Bus>, std::string> open_cyclonedds(const Settings& settings)
+tl::expected<std::unique_ptr<Bus>, std::string> open_cyclonedds(const Settings& settings, OwnSamples own)
 {
     bool shared = settings.transport == Transport::iceoryx && settings.shared_memory != SharedMemory::off;
     if (shared) {
@@ -360,7 +379,7 @@ tl::expected<std::unique_ptr<Bus>, std::string> open_cyclonedds(const Settings& 
     const auto participant = dds_create_participant(settings.domain, qos.get(), nullptr);
     if (participant < 0) return tl::make_unexpected(fmt::format("Cyclone DDS: participant: {}", dds_strretcode(-participant)));
     try {
-        return std::make_unique<CycloneBus>(std::move(owned_domain), Entity{participant}, settings, shared);
+        return std::make_unique<CycloneBus>(std::move(owned_domain), Entity{participant}, settings, shared, own);
     } catch (const Error& error) {
         return tl::make_unexpected(std::string{error.what()});
     }

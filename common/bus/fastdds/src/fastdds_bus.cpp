@@ -9,6 +9,7 @@
 #include "version.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cstring>
 #include <fastdds/dds/core/condition/WaitSet.hpp>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -79,6 +80,24 @@ Transport transport_of(const dds::DataReader& reader)
     return Transport::udp;
 }
 
+GuidPrefix prefix_of(const dds::InstanceHandle_t& endpoint)
+{
+    GuidPrefix guid{};
+    for (std::size_t i = 0; i < guid.size(); ++i) guid[i] = endpoint.value[i];
+    return guid;
+}
+
+/// Endpoints of this bus on one topic that do not count as each other's peers: the readers skip what the writers publish.
+struct OwnEndpoints {
+    std::int32_t writers = 0;
+    std::int32_t readers = 0;
+};
+
+std::uint32_t peers_of(std::int32_t matched, std::int32_t own)
+{
+    return static_cast<std::uint32_t>(std::max(matched - own, 0));
+}
+
 /// The same for all endpoints of a participant.
 struct Transports {
     Transport in_use;
@@ -87,17 +106,22 @@ struct Transports {
 
 class FastWriter final : public Writer {
 public:
-    FastWriter(dds::Publisher* publisher, dds::DataWriter* writer, dds::TypeSupport type, const TopicSpec& topic, Transports transports)
+    /// @param own  counts this writer, where readers of the same bus skip its samples
+    FastWriter(dds::Publisher* publisher, dds::DataWriter* writer, dds::TypeSupport type, const TopicSpec& topic, Transports transports,
+               std::shared_ptr<OwnEndpoints> own)
         : publisher_(publisher),
           writer_(writer),
           type_(std::move(type)),
           sample_(type_.create_data()),
           topic_(topic),
-          transports_(transports)
+          transports_(transports),
+          own_(std::move(own))
     {
+        if (own_) ++own_->writers;
     }
     ~FastWriter() override
     {
+        if (own_) --own_->writers;
         publisher_->delete_datawriter(writer_);
         type_.delete_data(sample_);
     }
@@ -119,7 +143,7 @@ public:
         dds::OfferedIncompatibleQosStatus incompatible;
         writer_->get_publication_matched_status(matched);
         writer_->get_offered_incompatible_qos_status(incompatible);
-        return {static_cast<std::uint32_t>(matched.current_count),
+        return {peers_of(matched.current_count, own_ ? own_->readers : 0),
                 incompatible.total_count,
                 policy_name(incompatible.last_policy_id),
                 transports_.in_use,
@@ -134,13 +158,15 @@ private:
     void* sample_;
     TopicSpec topic_;
     Transports transports_;
+    std::shared_ptr<OwnEndpoints> own_;
     std::uint64_t refused_ = 0;
 };
 
 class FastReader final : public Reader {
 public:
+    /// @param own  counts this reader, where it skips the samples of its own bus
     FastReader(dds::Subscriber* subscriber, dds::DataReader* reader, dds::WaitSet& waitset, dds::TypeSupport type, const TopicSpec& topic,
-               Transports transports, const fastdds::Peers& peers)
+               Transports transports, const fastdds::Peers& peers, std::shared_ptr<OwnEndpoints> own)
         : subscriber_(subscriber),
           reader_(reader),
           waitset_(waitset),
@@ -148,13 +174,17 @@ public:
           sample_(type_.create_data()),
           topic_(topic),
           transports_(transports),
-          peers_(peers)
+          peers_(peers),
+          own_(std::move(own)),
+          participant_(prefix_of(reader->get_instance_handle()))
     {
+        if (own_) ++own_->readers;
         reader_->get_statuscondition().set_enabled_statuses(dds::StatusMask::data_available());
         waitset_.attach_condition(reader_->get_statuscondition());
     }
     ~FastReader() override
     {
+        if (own_) --own_->readers;
         waitset_.detach_condition(reader_->get_statuscondition());
         subscriber_->delete_datareader(reader_);
         type_.delete_data(sample_);
@@ -164,7 +194,7 @@ public:
     {
         dds::SampleInfo info;
         while (fastdds::is_ok(reader_->take_next_sample(sample_, &info))) {
-            if (!info.valid_data) continue;
+            if (!info.valid_data || is_skipped(info)) continue;
             writer_ = info.publication_handle;
             if (fastdds::is_ros2(topic_.type)) fastdds::ros2_from_vendor(topic_.type, sample_, message);
             else std::memcpy(message, sample_, topic_.size);
@@ -179,18 +209,22 @@ public:
         dds::RequestedIncompatibleQosStatus incompatible;
         reader_->get_subscription_matched_status(matched);
         reader_->get_requested_incompatible_qos_status(incompatible);
-        return {static_cast<std::uint32_t>(matched.current_count), incompatible.total_count, policy_name(incompatible.last_policy_id),
-                transports_.in_use, transports_.asked};
+        return {peers_of(matched.current_count, own_ ? own_->writers : 0), incompatible.total_count,
+                policy_name(incompatible.last_policy_id), transports_.in_use, transports_.asked};
     }
 
     Sender sender() override
     {
-        GuidPrefix guid{};
-        for (std::size_t i = 0; i < guid.size(); ++i) guid[i] = writer_.value[i];
-        return peers_.sender(guid);
+        return peers_.sender(prefix_of(writer_));
     }
 
 private:
+    /// Fast DDS 2.9 cannot ignore the writers of its own participant.
+    bool is_skipped(const dds::SampleInfo& info) const
+    {
+        return own_ && prefix_of(info.publication_handle) == participant_;
+    }
+
     dds::Subscriber* subscriber_;
     dds::DataReader* reader_;
     dds::WaitSet& waitset_;
@@ -199,13 +233,16 @@ private:
     TopicSpec topic_;
     Transports transports_;
     const fastdds::Peers& peers_;
+    std::shared_ptr<OwnEndpoints> own_;
+    GuidPrefix participant_;
     dds::InstanceHandle_t writer_;  ///< the writer of the sample taken last
 };
 
 class FastBus final : public Bus {
 public:
-    FastBus(const Settings& settings, std::unique_ptr<fastdds::Peers> peers, dds::DomainParticipant* participant)
+    FastBus(const Settings& settings, std::unique_ptr<fastdds::Peers> peers, dds::DomainParticipant* participant, OwnSamples own)
         : settings_(settings),
+          own_samples_(own),
           peers_(std::move(peers)),
           participant_(participant),
           publisher_(participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT)),
@@ -269,7 +306,7 @@ private:
         auto [type, entity] = topic_of(topic);
         auto* writer = publisher_->create_datawriter(entity, qos);
         if (!writer) throw Error(fmt::format("Fast DDS: cannot write {}", topic.name));
-        return std::make_unique<FastWriter>(publisher_, writer, type, topic, transports_);
+        return std::make_unique<FastWriter>(publisher_, writer, type, topic, transports_, own_endpoints_of(topic));
     }
 
     std::unique_ptr<Reader> make_reader(const TopicSpec& topic) override
@@ -285,7 +322,16 @@ private:
         auto [type, entity] = topic_of(topic);
         auto* reader = subscriber_->create_datareader(entity, qos);
         if (!reader) throw Error(fmt::format("Fast DDS: cannot read {}", topic.name));
-        return std::make_unique<FastReader>(subscriber_, reader, waitset_, type, topic, transports_, *peers_);
+        return std::make_unique<FastReader>(subscriber_, reader, waitset_, type, topic, transports_, *peers_, own_endpoints_of(topic));
+    }
+
+    /// @returns nothing where readers of this topic receive what their own bus writes
+    std::shared_ptr<OwnEndpoints> own_endpoints_of(const TopicSpec& topic)
+    {
+        if (!skips_own(own_samples_, topic)) return nullptr;
+        auto& own = own_endpoints_[topic.name];
+        if (!own) own = std::make_shared<OwnEndpoints>();
+        return own;
     }
 
     std::pair<dds::TypeSupport, dds::Topic*> topic_of(const TopicSpec& spec)
@@ -301,6 +347,7 @@ private:
     }
 
     Settings settings_;
+    OwnSamples own_samples_;
     std::unique_ptr<fastdds::Peers> peers_;
     dds::DomainParticipant* participant_;
     dds::Publisher* publisher_;
@@ -308,12 +355,13 @@ private:
     dds::WaitSet waitset_;
     dds::ConditionSeq triggered_;
     std::map<std::string, dds::Topic*> topics_;
+    std::map<std::string, std::shared_ptr<OwnEndpoints>> own_endpoints_;
     Transports transports_;
 };
 
 }  // namespace
 
-tl::expected<std::unique_ptr<Bus>, std::string> open_fastdds(const Settings& asked)
+tl::expected<std::unique_ptr<Bus>, std::string> open_fastdds(const Settings& asked, OwnSamples own)
 {
     const auto checked = fastdds::with_room_in_shared_memory(asked);
     if (!checked) return tl::make_unexpected(checked.error());
@@ -321,7 +369,7 @@ tl::expected<std::unique_ptr<Bus>, std::string> open_fastdds(const Settings& ask
     auto peers = std::make_unique<fastdds::Peers>(settings.security.has_value());
     auto* participant = fastdds::join(settings, *peers);
     if (!participant) return tl::make_unexpected(fmt::format("Fast DDS: cannot join domain {}", settings.domain));
-    auto bus = std::make_unique<FastBus>(settings, std::move(peers), participant);
+    auto bus = std::make_unique<FastBus>(settings, std::move(peers), participant, own);
     if (shares_memory(settings) && settings.shared_memory == SharedMemory::required && bus->transport() == Transport::udp)
         return tl::make_unexpected(std::string{
             "Fast DDS cannot open its shared memory in /dev/shm (read-only, or of another user?): mend that, or use transport udp, "

@@ -71,6 +71,31 @@ const Table<Expectations>& expectations_table()
     return table;
 }
 
+void read_compositions(Section& section, File& file)
+{
+    if (!section.has("compose")) return;
+    const auto node = section.raw("compose");
+    if (!node.IsSequence()) return section.problem("compose", "expected a list of lists of names");
+    for (std::size_t i = 0; i < node.size(); ++i) {
+        std::vector<std::string> names;
+        bool are_names = node[i].IsSequence();
+        for (std::size_t j = 0; are_names && j < node[i].size(); ++j) {
+            are_names = node[i][j].IsScalar();
+            if (are_names) names.push_back(node[i][j].Scalar());
+        }
+        if (are_names) file.compositions.push_back(std::move(names));
+        else section.problem("compose", i, "expected a list of names, e.g. [fdi-a, attitude-a]");
+    }
+}
+
+YAML::Node compositions_node(const File& file)
+{
+    if (file.compositions.empty()) return YAML::Node{YAML::NodeType::Undefined};
+    YAML::Node node{YAML::NodeType::Sequence};
+    for (const auto& names : file.compositions) node.push_back(to_node(names));
+    return node;
+}
+
 bool gives_attitude(const File& file)
 {
     return unit_kind(file.unit.kind).gives_attitude;
@@ -144,6 +169,12 @@ const Table<File>& file_table()
          part<File, MonitorSection>({.name = "monitor", .otherwise = "there is none", .sentence = "A page of the running system."},
                                     &File::monitor, monitor_table(),
                                     [](const File& file, MonitorSection& monitor) { prepare_monitor(file.process, monitor); }),
+         own<File>({.name = "compose",
+                    .form = "list of lists of names",
+                    .otherwise = "every process runs alone",
+                    .sentence = "Processes that run in one, e.g. `[[fdi-a, attitude-a]]`: less latency and processor time, "
+                                "but one that dies takes the others along. They need the same bus, and no `security`."},
+                   read_compositions, compositions_node),
          part({.name = "expect", .sentence = "What a run must show."}, &File::expect, expectations_table())},
         {{"unit.kind: gyro", "The voted attitude.", gives_attitude, voter_tables().rows()},
          {"another unit.kind", "No voters.", [](const File& file) { return !gives_attitude(file); }, no_voters()}}};

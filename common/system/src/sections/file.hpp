@@ -26,6 +26,7 @@ struct File {
     std::vector<VoterSection> voters;
     std::optional<Ros2OutputSettings> ros2;
     std::optional<MonitorSection> monitor;
+    std::vector<std::vector<std::string>> compositions;
     Expectations expect;
 };
 

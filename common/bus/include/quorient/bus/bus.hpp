@@ -108,7 +108,7 @@ public:
     /// What DDS Security refused since the last call, each text once, partly in the vendor's language.
     virtual std::vector<std::string> refusals() { return {}; }
 
-private:
+    // Endpoints without their type: for advertise(), subscribe(), and a bus that is made of another one.
     virtual std::unique_ptr<Writer> make_writer(const TopicSpec& topic, const WriterOptions& options) = 0;
     virtual std::unique_ptr<Reader> make_reader(const TopicSpec& topic) = 0;
 };

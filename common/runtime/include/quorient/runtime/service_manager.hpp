@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string_view>
 
@@ -8,6 +9,7 @@ namespace quorient::runtime {
 
 /// Talks to the service manager that started this process, if one did: the datagrams of sd_notify(3) to $NOTIFY_SOCKET.
 /// The watchdog is fed only with handled frames: a process that lives and hears nothing is restarted.
+/// Of several services in one process each has such an object: the process is ready once all are, and a frame counts once all have handled one.
 class ServiceManager {
 public:
     /// From the environment. @returns nothing where no service manager listens.
@@ -26,13 +28,14 @@ public:
     void frame_handled(std::int64_t steady_ns);
 
 private:
-    ServiceManager(int socket, std::int64_t watchdog_ns) : socket_(socket), watchdog_ns_(watchdog_ns) {}
+    struct Service;
+
+    ServiceManager(int socket, std::int64_t watchdog_ns);
     void send(std::string_view state) const;
 
     int socket_;
     std::int64_t watchdog_ns_;  // 0 = none
-    std::int64_t fed_ns_ = 0;
-    bool told_ready_ = false;
+    std::shared_ptr<Service> service_;
 };
 
 }  // namespace quorient::runtime

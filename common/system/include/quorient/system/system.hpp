@@ -153,6 +153,12 @@ struct LaneProcess {
     IntegratorProcess integrator;  ///< where the system has an attitude
 };
 
+/// Why processes cannot run in one.
+struct Discord {
+    std::size_t place = 0;  ///< of the name that is to blame
+    std::string why;
+};
+
 /// A whole system as its file describes it.
 struct System {
     std::string file;
@@ -166,11 +172,18 @@ struct System {
     ProcessSettings monitor;  ///< for tools that look on
     std::optional<MonitorProcess> web_monitor;
     Expectations expectations;
+    std::vector<std::vector<std::string>> compositions;  ///< names of processes that run in one
     std::optional<simulation::VesselModel> vessel;  ///< of a unit of kind vessel_rates: what the detectors take it to be
     std::vector<std::string> channels;              ///< likewise, their names
 
     /// All processes of the file, in the order in which they start: those first that receive from the others.
     std::vector<const ProcessSettings*> processes() const;
+
+    /// The process of that name; nothing if there is none.
+    const ProcessSettings* process(std::string_view wanted) const;
+
+    /// What keeps these processes from running in one; nothing if they can.
+    std::optional<Discord> discord_of(const std::vector<std::string>& names) const;
 
     /// One for each lane; none where the unit gives no attitude.
     std::vector<const IntegratorProcess*> integrators() const;
@@ -188,10 +201,12 @@ struct System {
 struct Overrides {
     std::optional<Vendor> dds{};  ///< of every process
     std::optional<std::uint32_t> domain{};
-    std::string process{};           ///< the one that this host runs: only its network and keys are checked; empty = every one
+    std::vector<std::string> processes{};  ///< those that run here: only their networks and keys are checked; empty = every one
     std::vector<std::string> set{};  ///< `source.speed=2`, `source.faults+=axis=1,kind=zero`: as configuration::assign takes them
     bool joins = true;               ///< false: no process joins the bus, so no keys are needed
     bool any_host = false;           ///< neither networks nor keys are checked: the processes run on other hosts
+
+    bool concerns(std::string_view process) const;
 };
 
 /// Reads a system file. @returns every problem of the file at once.

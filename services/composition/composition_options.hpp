@@ -1,0 +1,24 @@
+#pragma once
+
+#include "quorient/runtime/options.hpp"
+
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+namespace quorient::composition {
+
+/// What `quorient-run` is told on its command line.
+struct Options {
+    std::string system_file;
+    std::vector<std::string> names;  ///< processes of the system file
+    std::string of;                  ///< in their place: the composition of the file that this process is in
+    std::optional<Vendor> dds;
+    std::optional<std::uint32_t> domain;
+    std::vector<std::string> set;  ///< values in place of the file's
+};
+
+/// Reads SYSTEM.yaml NAME… [--dds VENDOR] [--domain N] [--set KEY=VALUE …], or --of NAME in place of the names.
+tl::expected<Options, runtime::OptionsError> parse_options(int argc, char** argv);
+
+}  // namespace quorient::composition
