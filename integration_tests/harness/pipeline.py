@@ -1,5 +1,6 @@
 """One system under test: `quorient launch`, its children, and three independent listeners."""
 import argparse
+import itertools
 import json
 import os
 import pathlib
@@ -137,7 +138,7 @@ class Pipeline:
                 return again.pid
         children = pathlib.Path(f"/proc/{self.launch.pid}/task/{self.launch.pid}/children").read_text().split()
         for child in children:
-            if self._name_of(child) == name:
+            if name in (self._name_of(child), *self._members_of(child)):
                 return int(child)
         return None
 
@@ -153,9 +154,16 @@ class Pipeline:
             return []
 
     @classmethod
-    def _name_of(cls, process):
+    def _members_of(cls, process):
+        """Names of the system file's processes that run in this one."""
         words = cls._words_of(process)
-        return words[words.index("--name") + 1] if "--name" in words and "quorient-" in words[0] else None
+        if words and words[0].endswith("/quorient-run"):
+            return list(itertools.takewhile(lambda word: not word.startswith("--"), words[2:]))
+        return [words[words.index("--name") + 1]] if "--name" in words and "quorient-" in words[0] else []
+
+    @classmethod
+    def _name_of(cls, process):
+        return "+".join(cls._members_of(process)) or None
 
     @staticmethod
     def _signal(process, number):

@@ -16,6 +16,7 @@ NAMED = (
     "fdi-a/kill/isolating", "fdi-a/restart/quiet", "fdi-a/stop/quiet",
     "voter-1/kill/quiet", "voter-1/stop/quiet", "voter-2/kill/isolating",
     "sensor/kill/quiet", "sensor/stop/quiet",
+    "one-process-fdi-a+attitude-a/kill/isolating", "one-process-fdi-a+attitude-a/stop/quiet",
 )
 for cell in NAMED:
     setattr(KillMatrix, f"test_{cell}", lambda self, cell=cell: self.holds(cell))

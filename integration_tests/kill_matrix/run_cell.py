@@ -23,10 +23,17 @@ class Cell(NamedTuple):
     act: str
     fault: bool
     plain_vendor: str = "cyclonedds"
+    composed: bool = False  # the roles run in one process
 
     @property
     def name(self):
-        return f"{'+'.join(self.roles)}/{self.act}/{'isolating' if self.fault else 'quiet'}"
+        roles = "+".join(self.roles)
+        return f"{f'one-process-{roles}' if self.composed else roles}/{self.act}/{'isolating' if self.fault else 'quiet'}"
+
+    @property
+    def processes(self):
+        """What is acted on."""
+        return ("+".join(self.roles),) if self.composed else self.roles
 
     def touches(self, prefix):
         return any(role.startswith(prefix) for role in self.roles)
@@ -35,20 +42,23 @@ class Cell(NamedTuple):
 ROLES = ("sensor", "fdi-a", "attitude-a", "attitude-b", "voter-1", "voter-2")
 ACTS = ("kill", "stop", "term", "restart")
 PAIRS = (("attitude-a", "voter-1"), ("fdi-a", "attitude-a"), ("attitude-a", "attitude-b"), ("fdi-a", "voter-2"))
+LANE = ("fdi-a", "attitude-a")
 EVERYTHING = [
     *(Cell((role,), act, fault, vendor) for (role, act), (fault, vendor) in itertools.product(
         itertools.product(ROLES, ACTS), ((False, "cyclonedds"), (True, "fastdds")))),
     *(Cell(pair, "kill", fault) for pair, fault in itertools.product(PAIRS, (False, True))),
+    *(Cell(LANE, act, fault, vendor, composed=True) for act, (fault, vendor) in itertools.product(
+        ("kill", "stop"), ((False, "cyclonedds"), (True, "fastdds")))),
 ]
 BY_NAME = {cell.name: cell for cell in EVERYTHING}
 
 
 def act(pipeline, cell):
     if cell.act == "stop":
-        pipeline.stop_for(cell.roles, STOPPED_S)
+        pipeline.stop_for(cell.processes, STOPPED_S)
     elif cell.act == "kill" or cell.roles == ("sensor",) and cell.act == "restart":
-        for role in cell.roles:
-            pipeline.kill(role)
+        for process in cell.processes:
+            pipeline.kill(process)
     else:
         commands = [pipeline.terminate(role) for role in cell.roles]
         if cell.act == "restart":
@@ -102,7 +112,8 @@ def await_outcome(pipeline, cell, since):
 def run(cell, level="none"):
     """@returns figures and the bounds that were not met."""
     faults = [f"axis={FAULTY_AXIS},kind=scale,value=0.8,start={FAULT_S}"] if cell.fault else []
-    with Pipeline("source.duration_s=600", f"source.faults={faults}", plain_vendor=cell.plain_vendor, level=level) as pipeline:
+    composition = [f"compose=[[{', '.join(cell.roles)}]]"] if cell.composed else []
+    with Pipeline("source.duration_s=600", f"source.faults={faults}", *composition, plain_vendor=cell.plain_vendor, level=level) as pipeline:
         pipeline.until_running()
         since = pipeline.until_frame(ACT_FRAME)
         act(pipeline, cell)
@@ -118,7 +129,7 @@ def run(cell, level="none"):
         broken = list(bounds_broken(cell, figures, pipeline.merged.samples, since))
         if late:
             broken.append(late)
-        logs = {name: pipeline.log_of(name) for name in ("voter-1", "voter-2", *cell.roles)} if broken else {}
+        logs = {name: pipeline.log_of(name) for name in ("voter-1", "voter-2", *cell.processes)} if broken else {}
     return figures, broken, logs
 
 

@@ -137,6 +137,23 @@ def our_commands(file, case, prefix=""):
     return {prefix + name: [BIN / program, file, "--name", name] for program, name in [*names, ("quorient-sensor", "sensor")]}
 
 
+def lanes_composed(file, case):
+    """Detector and integrator of each lane in one process."""
+    commands = our_commands(file, case)
+    for i in range(case.get("lanes", 3)):
+        names = [f"fdi-l{i}", f"attitude-l{i}"]
+        for name in names:
+            del commands[name]
+        commands = {"+".join(names): [BIN / "quorient-run", file, *names], **commands}
+    return commands
+
+
+def all_but_sensor_composed(file, case):
+    commands = our_commands(file, case)
+    names = [name for name in commands if name != "sensor"]
+    return {"all but the sensor": [BIN / "quorient-run", file, *names], "sensor": commands["sensor"]}
+
+
 def floor_commands(case, domain, seconds):
     base = [BIN / "quorient-latency-graph"]
     lanes, voters = case.get("lanes", 3), case.get("voters", 2)
@@ -217,6 +234,12 @@ class Runner:
             commands.update(our_commands(file, case, f"{unit}/" if case.get("units", 1) > 1 else ""))
         return self.run(commands, self.domain, case, seconds)
 
+    def lanes(self, case, seconds):
+        return self.run(lanes_composed(system_file(self.directory, case, self.domain, 1, seconds), case), self.domain, case, seconds)
+
+    def all_but_sensor(self, case, seconds):
+        return self.run(all_but_sensor_composed(system_file(self.directory, case, self.domain, 1, seconds), case), self.domain, case, seconds)
+
     def floor(self, case, seconds):
         return self.run(floor_commands(case, self.domain, seconds), self.domain, case, seconds)
 
@@ -236,15 +259,15 @@ class Runner:
             print(f"{case} {who}: {error!r}", file=sys.stderr, flush=True)
             return None
 
-    def in_turns(self, cases, rounds, floors=FLOORS, seconds=None):
-        """All cases of a round beside each other, ours and the floors by turns."""
+    def in_turns(self, cases, rounds, floors=FLOORS, seconds=None, others=()):
+        """All cases of a round beside each other, ours, the floors and the other graphs by turns."""
         results = [{"case": case, "rounds": []} for case in cases]
         for turn in range(rounds):
             for result in results:
                 case = result["case"]
                 if self.out_of_time(f"{table.name_of(case)}, round {turn + 1}"):
                     continue
-                whom = ["ours", *(floors if TRANSPORTS[case["transport"]][1] and case.get("units", 1) == 1 else ())]
+                whom = ["ours", *(floors if TRANSPORTS[case["transport"]][1] and case.get("units", 1) == 1 else ()), *others]
                 entry = {who: self.once(who, case, seconds or self.options.seconds) for who in [*whom[turn % len(whom):], *whom[:turn % len(whom)]]}
                 result["rounds"].append({who: report for who, report in entry.items() if report})
                 tell(case, turn, result["rounds"][-1])
@@ -284,6 +307,14 @@ def transports(runner):
     results = []
     for rate in runner.options.rates:
         results += runner.in_turns([{"transport": name, "rate_hz": rate} for name in TRANSPORTS], runner.options.rounds)
+    return results
+
+
+def composed(runner):
+    results = []
+    for rate in runner.options.rates:
+        cases = [{"transport": name, "rate_hz": rate} for name, (_, floor) in TRANSPORTS.items() if floor]
+        results += runner.in_turns(cases, runner.options.rounds, FLOORS[:1], others=("lanes", "all_but_sensor"))
     return results
 
 
@@ -340,7 +371,7 @@ def machine(options):
     }
 
 
-SECTIONS = {"hops": hops, "transports": transports, "sustained": sustained, "growth": growth, "spinning": spinning}
+SECTIONS = {"hops": hops, "transports": transports, "composed": composed, "sustained": sustained, "growth": growth, "spinning": spinning}
 
 
 def rates(text):

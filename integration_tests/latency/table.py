@@ -6,7 +6,7 @@ import statistics
 import sys
 
 QUANTILES = ("p50", "p90", "p99", "p99.9", "max")
-WHO = {"ours": "ours", "floor": "floor", "floor_that_waits": "floor that waits"}
+WHO = {"ours": "ours", "floor": "floor", "floor_that_waits": "floor that waits", "lanes": "lanes composed", "all_but_sensor": "all but the sensor composed"}
 
 
 def median(values):
@@ -52,13 +52,18 @@ def over_rounds(result, who, value):
     return median([value(entry[who]) for entry in result["rounds"] if who in entry])
 
 
-def ratio(result, floor, quantile="p50"):
+def ratio(result, floor, quantile="p50", who="ours"):
     """Ours to a floor of the same round; the median of the rounds."""
+    return ratio_of(result, who, floor, lambda report: hop(report, "sensor_to_voted", quantile))
+
+
+def ratio_of(result, above, below, value):
+    """A figure of one graph to that of another of the same round; the median of the rounds."""
     ratios = []
     for entry in result["rounds"]:
-        if "ours" not in entry or floor not in entry:
+        if above not in entry or below not in entry:
             continue
-        a, b = (hop(entry[who], "sensor_to_voted", quantile) for who in ("ours", floor))
+        a, b = value(entry[above]), value(entry[below])
         if a and b:
             ratios.append(a / b)
     return median(ratios)
@@ -95,7 +100,7 @@ def pipeline_rows(results):
                 continue
             value = lambda quantile: number(over_rounds(result, who, lambda r: hop(r, "sensor_to_voted", quantile)))  # noqa: E731
             counts = [number(over_rounds(result, who, count)) for count in (lost, lambda r: r["duplicates"], lambda r: r["late"])]
-            ratios = [number(ratio(result, floor), 2) if who == "ours" else "" for floor in ("floor", "floor_that_waits")]
+            ratios = [number(ratio(result, floor, who=who), 2) if who not in ("floor", "floor_that_waits") else "" for floor in ("floor", "floor_that_waits")]
             body.append([
                 name_of(result["case"]), title, *map(value, QUANTILES), *counts,
                 number(over_rounds(result, who, lambda r: usage(r, "cpu_percent", sum))),
@@ -163,6 +168,10 @@ def growth_section(results):
     return ["## Growth", "", "Sensor stamp to voted [us].", ""] + pipeline_rows(results) + hop_rows(results)
 
 
+def composed_section(results):
+    return ["## Composed", "", "Several services in one process (`compose` of the system file). *Ours*: a process for each.", ""] + pipeline_rows(results)
+
+
 def spinning_section(results):
     return ["## Blocking and spinning", "", "One lane, one voter: four processes and the probe; spinning, the four never sleep.", ""] + pipeline_rows(results)
 
@@ -205,6 +214,18 @@ def pipeline_goals(results):
             yield [f"iceoryx / Cyclone DDS by UDP, p50, {rate} Hz: < 1", *verdict(ratios, 1)]
 
 
+COMPOSED_GOALS = {"lanes": (0.8, 0.75), "all_but_sensor": (0.45, 0.45)}
+
+
+def composed_goals(results):
+    for result in results:
+        for who, (latency, processor) in COMPOSED_GOALS.items():
+            name = f"{WHO[who]}, {name_of(result['case'])}"
+            yield [f"{name}: p50 / floor <= {latency}", *verdict(ratio(result, "floor", who=who), latency)]
+            used = ratio_of(result, who, "ours", lambda report: usage(report, "cpu_percent", sum))
+            yield [f"{name}: CPU / ours with a process for each <= {processor}", *verdict(used, processor)]
+
+
 def growth_goals(results):
     result = find(results, axes=24)
     if result:
@@ -221,7 +242,7 @@ def sustained_goals(results):
 
 def goals_section(results):
     body = []
-    for name, goals in (("hops", ping_goals), ("transports", pipeline_goals), ("growth", growth_goals), ("sustained", sustained_goals)):
+    for name, goals in (("hops", ping_goals), ("transports", pipeline_goals), ("composed", composed_goals), ("growth", growth_goals), ("sustained", sustained_goals)):
         body += goals(results[name]) if name in results else []
     runs = [entry["ours"] for name in ("transports", "growth", "spinning") for result in results.get(name, []) for entry in result["rounds"] if "ours" in entry]
     if runs:
@@ -229,7 +250,7 @@ def goals_section(results):
     return ["## Goals", ""] + rows(["goal", "here", ""], body)
 
 
-SECTIONS = {"hops": ping_section, "transports": transports_section, "sustained": sustained_section, "growth": growth_section, "spinning": spinning_section}
+SECTIONS = {"hops": ping_section, "transports": transports_section, "composed": composed_section, "sustained": sustained_section, "growth": growth_section, "spinning": spinning_section}
 
 
 def markdown(results):

@@ -28,7 +28,7 @@ class Installed(unittest.TestCase):
         assert installed.returncode == 0, installed.stderr
 
     def test_programs_explain_themselves_with_a_manual_page_and_the_demo_runs(self):
-        for program in ("quorient", "quorient-sensor", "quorient-fdi", "quorient-attitude", "quorient-voter", "quorient-monitor"):
+        for program in ("quorient", "quorient-sensor", "quorient-fdi", "quorient-attitude", "quorient-voter", "quorient-monitor", "quorient-run"):
             helped = run(self.prefix / "bin" / program, "--help")
             self.assertEqual(helped.returncode, 0, program)
             self.assertIn("Usage", helped.stdout)

@@ -28,7 +28,7 @@ class Units(unittest.TestCase):
         return [line for line in result.stderr.splitlines() if "quorient" in line]
 
     def test_are_understood_without_a_complaint(self):
-        self.assertEqual(len(self.units), 6)
+        self.assertEqual(len(self.units), 7)
         self.assertEqual(self.verify(), [])
 
     def test_are_complained_about_when_a_key_is_misspelt(self):

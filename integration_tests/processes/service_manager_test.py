@@ -63,6 +63,19 @@ class ServiceManager(ProcessTest):
         self.assertIsNone(self.hear(3 * self.WATCHDOG_S))
         self.assertIsNone(detector.poll())
 
+    def test_a_composition_is_ready_once_and_feeds_the_watchdog_when_all_its_services_handle_frames(self):
+        self.start("quorient-run", CONFIGURATIONS / "demo.yaml", "fdi-a", "attitude-a", "--domain", self.domain)
+        self.eventually(lambda: (self.run_directory / "attitude-a.heartbeat").exists(), "the composition is up")
+        self.assertIsNone(self.hear(self.WATCHDOG_S))
+        managed = self.environment
+        self.environment = {name: value for name, value in managed.items() if name != "NOTIFY_SOCKET"}
+        self.start("quorient", "launch", CONFIGURATIONS / "demo.yaml", "--domain", self.domain, "--join", "--without", "fdi-a", "--without", "attitude-a",
+                   "--set", "source.duration_s=60", "--set", "expect=null", "--json")
+        self.environment = managed
+        self.assertEqual(self.hear(20), "READY=1")
+        for _ in range(3):
+            self.assertEqual(self.hear(self.WATCHDOG_S), "WATCHDOG=1")
+
     def test_a_watchdog_for_another_process_is_not_fed(self):
         self.environment["WATCHDOG_PID"] = str(os.getpid())
         self.start_sensor()
