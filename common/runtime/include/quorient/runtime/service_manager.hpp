@@ -9,7 +9,8 @@ namespace quorient::runtime {
 
 /// Talks to the service manager that started this process, if one did: the datagrams of sd_notify(3) to $NOTIFY_SOCKET.
 /// The watchdog is fed only with handled frames: a process that lives and hears nothing is restarted.
-/// Of several services in one process each has such an object: the process is ready once all are, and a frame counts once all have handled one.
+/// Each of several services in one process has such an object. The process is ready once all are; the watchdog is fed once all have handled
+/// a frame.
 class ServiceManager {
 public:
     /// From the environment. @returns nothing where no service manager listens.
