@@ -26,6 +26,7 @@ Settings on_loopback(Vendor vendor)
     settings.vendor = vendor;
     settings.domain = 100 + static_cast<std::uint32_t>(::getpid() % 100);
     settings.participant = "test";
+    settings.voted_lease_s = 2;  // more than the writers offer
     return settings;
 }
 
