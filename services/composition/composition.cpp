@@ -68,8 +68,9 @@ int run(int argc, char** argv)
     const auto options = parse_options(argc, argv);
     if (!options) return options.error().exit_code;
 
-    const auto system = system::load(
-        options->system_file, {.dds = options->dds, .domain = options->domain, .processes = options->names, .set = options->set});
+    const auto known = options->of.empty() ? options->names : Names{options->of};
+    const auto system = system::load(options->system_file,
+                                     {.dds = options->dds, .domain = options->domain, .processes = known, .set = options->set});
     if (!system) return runtime::report(system.error());
 
     const auto names = chosen(*options, *system);
