@@ -219,7 +219,7 @@ TEST_P(ServiceThread, allocates_locks_logs_and_throws_nothing_per_frame_in_our_c
     ::setenv("QUORIENT_RUN_DIR", testing::TempDir().c_str(), 1);
     const auto domain = 100 + static_cast<std::uint32_t>(::getpid() % 100);
     auto system = system::load(QUORIENT_SOURCE_DIR "/deploy/configurations/demo.yaml",
-                               {.dds = bus::vendor_from(GetParam()).value(), .domain = domain, .process = {}, .set = {"source.faults=[]"}});
+                               {.dds = bus::vendor_from(GetParam()).value(), .domain = domain, .processes = {}, .set = {"source.faults=[]"}});
     ASSERT_TRUE(system) << system.error();
     system->voters.resize(1);
     system->sensor.consumers = {"voter-1"};
