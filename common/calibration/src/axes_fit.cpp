@@ -76,20 +76,26 @@ tl::expected<AxesFit, std::string> fit_axes(const std::vector<AxisVector>& unbia
     return fit;
 }
 
+geometry::Axes turned(const geometry::Axes& nominal, const std::vector<std::size_t>& instrument, const std::vector<Eigen::Matrix3d>& to_first)
+{
+    geometry::Axes axes = nominal;
+    for (std::size_t axis = 0; axis < instrument.size(); ++axis) {
+        const Eigen::Matrix3d& turn = to_first[instrument[axis]];
+        const auto row = static_cast<Eigen::Index>(axis);
+        if (Eigen::AngleAxisd(turn).angle() >= nominal_enough) axes.row(row) = nominal.row(row) * turn.transpose();
+    }
+    return axes;
+}
+
 geometry::Axes mounted(const std::vector<AxisVector>& unbiased_rates, const geometry::Axes& nominal,
                        const std::vector<std::size_t>& instrument)
 {
-    geometry::Axes axes = nominal;
     const auto rows = rows_of_instruments(instrument);
     const auto first = rates_of(unbiased_rates, nominal, rows.front());
-    for (std::size_t i = 1; i < rows.size() && first; ++i) {
-        const auto own = rates_of(unbiased_rates, nominal, rows[i]);
-        if (!own) continue;
-        const Eigen::Matrix3d to_first = closest_rotation(*own, *first);
-        if (Eigen::AngleAxisd(to_first).angle() < nominal_enough) continue;
-        for (const Eigen::Index row : rows[i]) axes.row(row) = nominal.row(row) * to_first.transpose();
-    }
-    return axes;
+    std::vector<Eigen::Matrix3d> to_first(rows.size(), Eigen::Matrix3d::Identity());
+    for (std::size_t i = 1; i < rows.size() && first; ++i)
+        if (const auto own = rates_of(unbiased_rates, nominal, rows[i])) to_first[i] = closest_rotation(*own, *first);
+    return turned(nominal, instrument, to_first);
 }
 
 }  // namespace quorient::calibration

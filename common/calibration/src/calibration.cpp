@@ -121,19 +121,22 @@ RestFigures mean_of_all(Samples samples)
 }
 
 /// Without rest: the part of the means that no rotation explains, and the standard deviation of such parts.
-void keep_disagreement(const AxesFit& fit, const std::vector<AxisVector>& rates, const std::vector<bool>& usable, RestFigures& figures)
+/// @param sound  the axes of the fit; the others' figures stay
+void keep_disagreement(const AxesFit& fit, const std::vector<AxisVector>& rates, const std::vector<bool>& usable,
+                       const std::vector<Eigen::Index>& sound, RestFigures& figures)
 {
     const geometry::Axes h = fit.axes.array().colwise() * fit.gain.array();
     const Eigen::MatrixXd residual = Eigen::MatrixXd::Identity(h.rows(), h.rows()) - h * (h.transpose() * h).inverse() * h.transpose();
-    figures.bias_rad_s = AxisVector(residual * figures.bias_rad_s);
+    figures.bias_rad_s(sound) = AxisVector(residual * figures.bias_rad_s(sound));
+    AxisVector squares = AxisVector::Zero(h.rows());
     double count = 0;
     for (std::size_t i = 0; i < rates.size(); ++i) {
         if (!usable[i]) continue;
-        figures.deviation_rad_s += AxisVector(residual * rates[i]).cwiseAbs2();
+        squares += AxisVector(residual * rates[i]).cwiseAbs2();
         ++count;
     }
     const AxisVector share = residual.diagonal();
-    figures.deviation_rad_s = (figures.deviation_rad_s.array() / share.array() / std::max(1.0, count)).sqrt();
+    figures.deviation_rad_s(sound) = (squares.array() / share.array() / std::max(1.0, count)).sqrt().matrix();
 }
 
 /// Means over blocks of usable samples in a row: manoeuvres stay, vibration (which each sensor samples at its own time) goes.
@@ -169,16 +172,58 @@ std::vector<AxisVector> moving_rates(const std::vector<AxisVector>& unbiased, co
     return moving;
 }
 
-void take_axes(const AxesFit& fit, const geometry::Axes& nominal, Calibration& result)
+/// @param sound  the axes of the fit; the others keep these nominal directions
+void take_axes(const AxesFit& fit, const geometry::Axes& nominal, const std::vector<Eigen::Index>& sound, Calibration& result)
 {
     result.axes_residual_rad_s = fit.residual_rad_s;
-    for (Eigen::Index axis = 0; axis < nominal.rows(); ++axis) {
-        const Eigen::Vector3d fitted = fit.axes.row(axis);
-        const Eigen::Vector3d before = nominal.row(axis);
-        result.misalignment_rad[index(axis)] = std::atan2(fitted.cross(before).norm(), fitted.dot(before));
-        Eigen::Vector3d::Map(result.cluster.description.axis[index(axis)].data()) = fitted;
-        result.cluster.gain[index(axis)] = fit.gain(axis);
+    for (Eigen::Index axis = 0; axis < nominal.rows(); ++axis)
+        Eigen::Vector3d::Map(result.cluster.description.axis[index(axis)].data()) = nominal.row(axis);
+    for (Eigen::Index i = 0; i < fit.axes.rows(); ++i) {
+        const std::size_t axis = index(sound[index(i)]);
+        const Eigen::Vector3d fitted = fit.axes.row(i);
+        const Eigen::Vector3d before = nominal.row(sound[index(i)]);
+        result.misalignment_rad[axis] = std::atan2(fitted.cross(before).norm(), fitted.dot(before));
+        Eigen::Vector3d::Map(result.cluster.description.axis[axis].data()) = fitted;
+        result.cluster.gain[axis] = fit.gain(i);
     }
+}
+
+/// An axis that was set aside is not corrected, and as noisy as the others.
+void leave_raw(const std::vector<Eigen::Index>& sound, Calibration& result)
+{
+    std::vector<double> sigma;
+    for (const Eigen::Index axis : sound) sigma.push_back(result.cluster.description.sigma[index(axis)]);
+    std::ranges::sort(sigma);
+    for (const OutsideClass& outside : result.outside) {
+        result.cluster.description.bias[outside.axis] = 0;
+        result.cluster.description.sigma[outside.axis] = sigma[sigma.size() / 2];
+        result.cluster.bias_spread_rad_s[outside.axis] = 0;
+    }
+}
+
+std::vector<AxisVector> of_axes(const std::vector<AxisVector>& rates, const std::vector<Eigen::Index>& axes)
+{
+    std::vector<AxisVector> chosen;
+    chosen.reserve(rates.size());
+    for (const AxisVector& rate : rates) chosen.emplace_back(rate(axes));
+    return chosen;
+}
+
+std::vector<Eigen::Index> sound_axes(std::size_t count, AxisMask outside)
+{
+    std::vector<Eigen::Index> sound;
+    for (std::size_t axis = 0; axis < count; ++axis)
+        if (!has_axis(outside, axis)) sound.push_back(static_cast<Eigen::Index>(axis));
+    return sound;
+}
+
+/// Which instruments agree, from their raw rates.
+Consensus compared(Samples samples, const std::vector<bool>& usable, const geometry::SensorCluster& cluster)
+{
+    std::vector<AxisVector> raw;
+    raw.reserve(samples.size());
+    for (const Sample& sample : samples) raw.push_back(sample.rate);
+    return consensus_of(block_means(samples, raw, usable), cluster);
 }
 
 /// Figures of the corrected increments: raw minus bias, divided by the gain.
@@ -198,6 +243,38 @@ void fill_cluster(const ClusterDescription& nominal, const Limits& limits, Calib
         cluster.description.range[i] = range > 0 ? (range + std::abs(result.at_rest.bias_rad_s(axis))) / gain : 0;
         cluster.bias_spread_rad_s[i] = result.at_rest.bias_spread_rad_s(axis);
     }
+}
+
+/// What the nominal axes become before the fit: instruments with frames of their own are turned to the first one's.
+geometry::Axes mounted_axes(const geometry::SensorCluster& cluster, const Consensus& consensus, const std::vector<AxisVector>& moving)
+{
+    if (!consensus.to_first.empty()) return turned(cluster.axes, cluster.instrument, consensus.to_first);
+    return moving.empty() ? cluster.axes : mounted(moving, cluster.axes, cluster.instrument);
+}
+
+/// Axes, gains and motion noise from the sound axes.
+/// @param rates  without bias
+/// @returns why not; the nominal axes stay then.
+tl::expected<void, std::string> fit_motion(Samples samples, const geometry::SensorCluster& cluster, const Consensus& consensus,
+                                           std::vector<AxisVector> rates, const std::vector<bool>& usable, Calibration& result)
+{
+    const auto sound = sound_axes(cluster.size(), consensus.outside_mask);
+    const bool rested = !result.rest.empty();
+    const double noise_rad_s = std::sqrt(result.at_rest.deviation_rad_s.squaredNorm() / static_cast<double>(cluster.size()));
+    rates = of_axes(rates, sound);
+    const auto moving = rested ? moving_rates(rates, usable, noise_rad_s) : block_means(samples, rates, usable);
+    if (!consensus.ambiguous.empty()) return tl::unexpected(consensus.ambiguous);
+    const geometry::Axes axes = mounted_axes(cluster, consensus, moving);
+    const auto fit = fit_axes(moving, axes(sound, Eigen::all));
+    if (!fit) return tl::unexpected(fit.error());
+    if (!rested) keep_disagreement(*fit, rates, usable, sound, result.at_rest);
+    take_axes(*fit, axes, sound, result);
+    for (AxisVector& rate : rates) rate = rate.cwiseQuotient(fit->gain).eval();
+    const AxisVector deviation = result.at_rest.deviation_rad_s(sound).cwiseQuotient(fit->gain);
+    result.motion = motion_figures(samples, rates, usable, fit->axes, deviation);
+    result.cluster.jitter_along_s = result.motion->noise.along_s;
+    result.cluster.jitter_across_s = result.motion->noise.across_s;
+    return {};
 }
 
 }  // namespace
@@ -221,26 +298,17 @@ tl::expected<Calibration, std::string> calibrate(Samples samples, const ClusterD
 
     result.cluster.description = nominal;
     result.cluster.gain.fill(1.0);
-    const double noise_rad_s = std::sqrt(result.at_rest.deviation_rad_s.squaredNorm() / static_cast<double>(cluster->size()));
-    const auto moving = rested ? moving_rates(rates, usable, noise_rad_s) : block_means(samples, rates, usable);
-    const geometry::Axes axes = moving.empty() ? cluster->axes : mounted(moving, cluster->axes, cluster->instrument);
-    const auto fit = fit_axes(moving, axes);
-    if (!fit && !rested)
+    const Consensus consensus = compared(samples, usable, *cluster);
+    result.outside = consensus.outside;
+    const auto fitted = fit_motion(samples, *cluster, consensus, std::move(rates), usable, result);
+    if (!fitted && !rested)
         return tl::unexpected(
             fmt::format("no resting segment of {} s (standard deviation below {} rad/s), and without one the axes must show the "
                         "biases by their disagreement: {}",
-                        settings.shortest_s, settings.deviation_rad_s, fit.error()));
-    if (fit) {
-        if (!rested) keep_disagreement(*fit, rates, usable, result.at_rest);
-        take_axes(*fit, axes, result);
-        for (AxisVector& rate : rates) rate = rate.cwiseQuotient(fit->gain).eval();
-        result.motion = motion_figures(samples, rates, usable, fit->axes, result.at_rest.deviation_rad_s.cwiseQuotient(fit->gain));
-        result.cluster.jitter_along_s = result.motion->noise.along_s;
-        result.cluster.jitter_across_s = result.motion->noise.across_s;
-    } else {
-        result.axes_note = fit.error();
-    }
+                        settings.shortest_s, settings.deviation_rad_s, fitted.error()));
+    if (!fitted) result.axes_note = fitted.error();
     fill_cluster(nominal, limits, result);
+    leave_raw(sound_axes(cluster->size(), consensus.outside_mask), result);
     return result;
 }
 

@@ -38,6 +38,12 @@ std::string noise_text(const CalibratedCluster& cluster)
     return text + "}";
 }
 
+/// Of a bias that was seen in one rest alone no spread is known.
+std::string spread_text(double spread_rad_s)
+{
+    return spread_rad_s > 0 ? fmt::format("bias_spread_rad_s: {:.17g}, ", spread_rad_s) : std::string();
+}
+
 template <std::size_t Size>
 void set_name(Name<Size>& name, std::string_view text)
 {
@@ -229,10 +235,10 @@ std::string to_yaml(const CalibratedCluster& cluster)
     for (std::size_t axis = 0; axis < description.axis_count; ++axis) {
         text += fmt::format(
             "  - {{instrument: {:?}, direction: {}, gain: {:.17g},\n"
-            "     bias_rad_s: {:.17g}, bias_spread_rad_s: {:.17g}, sigma_rad: {:.17g},\n"
+            "     bias_rad_s: {:.17g}, {}sigma_rad: {:.17g},\n"
             "     quantum_rad: {:.17g}, range_rad_s: {:.17g}, position_m: {}}}\n",
             text_of(description.instrument_name[description.instrument[axis]]), triple(description.axis[axis]), cluster.gain[axis],
-            description.bias[axis], cluster.bias_spread_rad_s[axis], description.sigma[axis], description.quantum[axis],
+            description.bias[axis], spread_text(cluster.bias_spread_rad_s[axis]), description.sigma[axis], description.quantum[axis],
             description.range[axis], triple(description.position_m[axis]));
     }
     return text;

@@ -152,7 +152,7 @@ private:
 std::optional<fdi::GatedNoise> gated_terms(Samples samples, const ClusterDescription& nominal, const Calibration& calibration,
                                       const RestSettings& settings)
 {
-    if (!calibration.motion || calibration.motion->noise.samples == 0) return std::nullopt;
+    if (!calibration.motion || calibration.motion->noise.samples == 0 || !calibration.outside.empty()) return std::nullopt;
     const auto halves = held_out_halves(samples, nominal, calibration.rest, settings);
     if (halves.empty() || halves.front().cluster.instrument_name.size() < least_instruments) return std::nullopt;
     std::vector<fdi::InstrumentArray> arrays;

@@ -54,24 +54,31 @@ double largest_statistic(Samples samples, const std::vector<bool>& moving, const
 
 }  // namespace
 
-std::optional<double> motion_level(Samples samples, const Calibration& calibration)
+std::optional<MotionLevel> motion_level(Samples samples, const Calibration& calibration)
 {
     const auto moving = moving_samples(samples, calibration);
     const auto cluster = geometry::make_cluster(calibration.cluster.description);
     if (!cluster || std::find(moving.begin(), moving.end(), true) == moving.end()) return std::nullopt;
-    double level = 1;
+    AxisMask aside = 0;
+    for (const OutsideClass& axis : calibration.outside) aside |= cluster->axes_of(cluster->instrument[axis.axis]);
+    MotionLevel found;
     for (int round = 0; round < rounds; ++round) {
         fdi::DetectorSettings settings{.method = "accumulating"};
         settings.instruments = true;
-        settings.motion_noise = level;
+        settings.motion_noise = found.level;
         const auto detector = fdi::AccumulatingDetector::make(settings, *cluster);
         if (!detector) return std::nullopt;
+        (*detector)->exclude(aside);
         const double largest = largest_statistic(samples, moving, calibration, **detector);
-        if (largest <= largest_wanted * (1 + close_enough) && (level == 1 || largest >= largest_wanted * (1 - close_enough))) break;
+        const bool small_enough = largest <= largest_wanted * (1 + close_enough);
+        found.at_limit = !small_enough;
+        if (small_enough && (found.level == 1 || largest >= largest_wanted * (1 - close_enough))) break;
         // The statistic falls no faster than the level rises.
-        level = std::clamp(level * largest / largest_wanted, 1.0, highest);
+        const double next = std::clamp(found.level * largest / largest_wanted, 1.0, highest);
+        if (next == found.level) break;
+        found.level = next;
     }
-    return level;
+    return found;
 }
 
 }  // namespace quorient::calibration

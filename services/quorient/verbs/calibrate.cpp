@@ -5,7 +5,6 @@
 #include "cli/json_output.hpp"
 #include "cli/output_file.hpp"
 #include "quorient/calibration/log_sample.hpp"
-#include "quorient/calibration/motion_level.hpp"
 #include "quorient/recording/merge.hpp"
 #include "verbs.hpp"
 
@@ -84,13 +83,15 @@ void run(const CalibrateOptions& options)
     const auto samples = read_samples(reader);
     auto calibration = calibration::calibrate(samples, nominal, options.rest);
     if (!calibration) fail(fmt::format("{}: {}", options.logs.front(), calibration.error()));
-    calibration->cluster.motion_level = motion_level(samples, *calibration).value_or(0);
     calibration->cluster.gated = gated_terms(samples, nominal, *calibration, options.rest);
+    Searches found{.level = motion_level(samples, *calibration), .silence = {}};
+    calibration->cluster.motion_level = found.level ? found.level->level : 0;
+    found.silence = make_silent(samples, *calibration);
     calibration->cluster.origin = files.front().filename().string();
 
     const auto& statistics = reader.statistics();
-    if (options.json) fmt::print("{}\n", dump(calibration_json(*calibration, samples, statistics)));
-    else fmt::print("{}", calibration_text(*calibration, samples, statistics));
+    if (options.json) fmt::print("{}\n", dump(calibration_json(*calibration, found, samples, statistics)));
+    else fmt::print("{}", calibration_text(*calibration, found, samples, statistics));
     if (out) {
         out->stream() << calibration::to_yaml(calibration->cluster);
         out->finish();

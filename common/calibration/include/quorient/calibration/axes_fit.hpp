@@ -2,6 +2,7 @@
 
 #include "quorient/calibration/sample.hpp"
 
+#include <Eigen/Core>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -21,6 +22,9 @@ struct AxesFit {
 /// whole cluster, a common scale) is therefore kept from them.
 /// @returns an error if the cluster has no redundancy, or the motion did not turn about all three body axes.
 tl::expected<AxesFit, std::string> fit_axes(const std::vector<geometry::AxisVector>& unbiased_rates, const geometry::Axes& nominal);
+
+/// Nominal axes with every instrument turned by its rotation to the first one's frame; one that is within 10 deg stays as it is.
+geometry::Axes turned(const geometry::Axes& nominal, const std::vector<std::size_t>& instrument, const std::vector<Eigen::Matrix3d>& to_first);
 
 /// Nominal axes with every instrument of three or more axes turned to agree best with the first one (Wahba's problem by singular values
 /// [Markley 1988]); instruments that are already within 10 deg stay as they are. For logs whose instruments each have a frame of their own.

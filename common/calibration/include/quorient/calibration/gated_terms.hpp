@@ -12,7 +12,7 @@ namespace quorient::calibration {
 /// largest chi-square is at most its expected value. Among such terms a pattern search over their logarithms takes those with the smallest
 /// detectable step (a local minimum). An order statistic decides, not the largest value: the gate is for the worst frames.
 /// [docs/methods/calibration.md]
-/// @returns nothing where the recording never turned violently enough, half of its motion is not enough for a calibration, or the detector
+/// @returns nothing where the recording never turned violently enough, an axis was set aside, half of its motion is not enough for a calibration, or the detector
 /// does not accept the array.
 std::optional<fdi::GatedNoise> gated_terms(Samples samples, const ClusterDescription& nominal,
                                                    const Calibration& calibration,
