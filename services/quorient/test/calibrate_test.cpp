@@ -109,6 +109,50 @@ TEST_F(CalibrateVerb, finds_four_sensors_of_one_flight_in_agreement)
     }
 }
 
+/// Which axes a calibration of this log sets aside, and what a replay of the log isolates with it.
+json calibration_of(const std::string& log)
+{
+    const Output output = run("calibrate " + log + " --json");
+    if (output.exit_code != 0) throw std::runtime_error(output.error);
+    return json::parse(output.out);
+}
+
+TEST_F(CalibrateVerb, sets_the_soft_axis_of_a_flight_aside_and_its_replay_isolates_that_instrument_alone)
+{
+    const auto folder = data_dir() / "field";
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no recordings under " << data_dir();
+    for (const char* const log : {"cats_drone_soft_axis_1.csv", "cats_drone_soft_axis_2.csv"}) {
+        SCOPED_TRACE(log);
+        const json calibration = calibration_of((folder / log).string());
+        const json& outside = calibration["outside_class"];
+        ASSERT_EQ(outside.size(), 2U);
+        EXPECT_EQ(outside[0]["name"], "g0 y");
+        EXPECT_EQ(outside[0]["kind"], "bias");
+        EXPECT_NEAR(outside[0]["bias_rad_s"].get<double>(), 9 * degree, 1 * degree);
+        EXPECT_EQ(outside[1]["name"], "g0 z");
+        EXPECT_EQ(outside[1]["kind"], "gain");
+        EXPECT_NEAR(outside[1]["gain"].get<double>(), 0.47, 0.03);
+        EXPECT_NEAR(outside[1]["bias_rad_s"].get<double>(), -10.7 * degree, 0.5 * degree);
+        EXPECT_EQ(calibration["axes"][2]["gain"], 1.0);
+        EXPECT_EQ(calibration["replay"][0]["method"], "field");
+        EXPECT_EQ(calibration["replay"][0]["isolated"], "g0");
+    }
+}
+
+TEST_F(CalibrateVerb, sets_nothing_aside_on_sound_flights_and_their_replay_isolates_nobody)
+{
+    const auto folder = data_dir() / "field";
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no recordings under " << data_dir();
+    for (const char* const log : {"cats_drone_healthy.csv", "cats_rocket_healthy_long.csv", "ardupilot_3_imus_crash.bin"}) {
+        SCOPED_TRACE(log);
+        const json calibration = calibration_of((folder / log).string());
+        EXPECT_TRUE(calibration["outside_class"].empty()) << calibration["outside_class"];
+        for (const json& replay : calibration["replay"]) EXPECT_TRUE(replay["isolated"].is_null()) << replay;
+        const bool several_rests = calibration["rest"].size() > 1;
+        EXPECT_EQ(calibration["axes"][0]["bias_spread_rad_s"].is_null(), !several_rests);
+    }
+}
+
 TEST_F(CalibrateVerb, explains_what_it_cannot_calibrate)
 {
     const Output moving = run("simulate random --layout orthogonal-3 --interval 0.01 --duration 30 --noise-rad 1e-5");

@@ -15,6 +15,9 @@ constexpr double largest_learned_from = 0.6;
 /// After so long a silence an instrument has been switched off: nothing is known of its bias.
 constexpr double forgotten_after_s = 5;
 
+/// Nothing is learned before the noise of the differences is known: with too small a noise the first frames would be taken for certain.
+constexpr double noise_known_s = 0.5;
+
 /// The bound of learned gains on a structure: what flexes looks like a gain.
 constexpr double structure_gain_error = 0.10;
 
@@ -145,6 +148,7 @@ void FieldDetector::State::start_with(const field::Frame& frame)
         ages_[m] = 0;
     }
     if (!learning_begun_) {
+        learning_from_ = frame.sequence;
         std::size_t first = 0;
         while (!ended.has(first)) ++first;
         comparison_.learning().reset(start_.rested(first));
@@ -200,7 +204,8 @@ std::size_t FieldDetector::State::oldest_kept() const
 
 bool FieldDetector::State::may_learn() const
 {
-    return rules_.learning && frames_ >= calm_from_ && disturbance_ < largest_learned_from && comparable().size() >= 3;
+    const bool knows_noise = frames_ >= frames_in(noise_known_s);
+    return rules_.learning && knows_noise && frames_ >= calm_from_ && disturbance_ < largest_learned_from && comparable().size() >= 3;
 }
 
 /// The middle one of three frames.
@@ -220,7 +225,10 @@ void FieldDetector::State::compare()
     age_instruments();
     diagnose();
 
-    if (compared.size() == 2) return judge_two(compared);
+    if (compared.size() == 2) {
+        comparison_.learning().wander(framing_.interval_s());
+        return judge_two(compared);
+    }
     if (compared.size() < 3) return;
     judge(filters_.examine(comparison_.sums(), comparison_.slow_sums(), comparison_.learning(), compared, ages_, frames_));
 }

@@ -63,6 +63,7 @@ private:
     void judge(const field::Suspicions& found);
     void judge_two(InstrumentSet two);
     void contradict(const Suspicion& suspicion);
+    void forget_learned();
     void name(std::size_t m, std::uint64_t onset, const field::Blame& blame);
     void degrade(std::size_t m, Diagnosis why);
     void follow_fast_lane();
@@ -103,6 +104,7 @@ private:
     std::size_t pending_count_ = 0;
     Eigen::Vector3d last_consensus_ = Eigen::Vector3d::Zero();
     bool learning_begun_ = false;
+    std::uint64_t learning_from_ = 0;  ///< sequence
     std::uint64_t last_sequence_ = 0;
 
     std::uint64_t frames_ = 0;  ///< compared

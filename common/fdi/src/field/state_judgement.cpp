@@ -20,6 +20,9 @@ constexpr double calm_s = 0.5;
 /// A degraded instrument is reported for so long after the last sign of it.
 constexpr double degraded_s = 1;
 
+/// A fault that began no later after the first comparison has been learned from.
+constexpr double misled_s = 1;
+
 /// An instrument that is left out more than Accusation::most_returns times within this time is erratic.
 constexpr double whipsaw_s = 10;
 
@@ -125,7 +128,19 @@ void FieldDetector::State::name(std::size_t m, std::uint64_t onset, const field:
     accused.onset = onset;
     ages_[m] = 0;
     diagnostics_.accuse(m, blame);
-    comparison_.learning().centre(comparable());
+    const auto misled = static_cast<std::uint64_t>(std::lround(misled_s / cluster_.interval_s));
+    if (onset <= learning_from_ + misled) forget_learned();
+    else comparison_.learning().centre(comparable());
+}
+
+/// An instrument that was faulty from the start has misled the others' comparison: all begins again without it.
+void FieldDetector::State::forget_learned()
+{
+    const InstrumentSet sound = comparable();
+    bool rested = true;
+    for (std::size_t m = 0; m < array_.size(); ++m) rested = rested && (!sound.has(m) || start_.rested(m));
+    comparison_.learning().reset(rested);
+    ages_.fill(0);
 }
 
 void FieldDetector::State::check_erratic()
