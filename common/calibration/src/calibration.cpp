@@ -120,6 +120,13 @@ RestFigures mean_of_all(Samples samples)
     return figures;
 }
 
+AxisVector of_axes(const AxisVector& values, const std::vector<Eigen::Index>& axes)
+{
+    AxisVector chosen(static_cast<Eigen::Index>(axes.size()));
+    for (std::size_t i = 0; i < axes.size(); ++i) chosen(static_cast<Eigen::Index>(i)) = values(axes[i]);
+    return chosen;
+}
+
 /// Without rest: the part of the means that no rotation explains, and the standard deviation of such parts.
 /// @param sound  the axes of the fit; the others' figures stay
 void keep_disagreement(const AxesFit& fit, const std::vector<AxisVector>& rates, const std::vector<bool>& usable,
@@ -127,7 +134,7 @@ void keep_disagreement(const AxesFit& fit, const std::vector<AxisVector>& rates,
 {
     const geometry::Axes h = fit.axes.array().colwise() * fit.gain.array();
     const Eigen::MatrixXd residual = Eigen::MatrixXd::Identity(h.rows(), h.rows()) - h * (h.transpose() * h).inverse() * h.transpose();
-    figures.bias_rad_s(sound) = AxisVector(residual * figures.bias_rad_s(sound));
+    const AxisVector bias = residual * of_axes(figures.bias_rad_s, sound);
     AxisVector squares = AxisVector::Zero(h.rows());
     double count = 0;
     for (std::size_t i = 0; i < rates.size(); ++i) {
@@ -136,7 +143,11 @@ void keep_disagreement(const AxesFit& fit, const std::vector<AxisVector>& rates,
         ++count;
     }
     const AxisVector share = residual.diagonal();
-    figures.deviation_rad_s(sound) = (squares.array() / share.array() / std::max(1.0, count)).sqrt().matrix();
+    const AxisVector deviation = (squares.array() / share.array() / std::max(1.0, count)).sqrt();
+    for (std::size_t i = 0; i < sound.size(); ++i) {
+        figures.bias_rad_s(sound[i]) = bias(static_cast<Eigen::Index>(i));
+        figures.deviation_rad_s(sound[i]) = deviation(static_cast<Eigen::Index>(i));
+    }
 }
 
 /// Means over blocks of usable samples in a row: manoeuvres stay, vibration (which each sensor samples at its own time) goes.
@@ -205,7 +216,7 @@ std::vector<AxisVector> of_axes(const std::vector<AxisVector>& rates, const std:
 {
     std::vector<AxisVector> chosen;
     chosen.reserve(rates.size());
-    for (const AxisVector& rate : rates) chosen.emplace_back(rate(axes));
+    for (const AxisVector& rate : rates) chosen.push_back(of_axes(rate, axes));
     return chosen;
 }
 
@@ -265,12 +276,14 @@ tl::expected<void, std::string> fit_motion(Samples samples, const geometry::Sens
     const auto moving = rested ? moving_rates(rates, usable, noise_rad_s) : block_means(samples, rates, usable);
     if (!consensus.ambiguous.empty()) return tl::unexpected(consensus.ambiguous);
     const geometry::Axes axes = mounted_axes(cluster, consensus, moving);
-    const auto fit = fit_axes(moving, axes(sound, Eigen::all));
+    geometry::Axes nominal(static_cast<Eigen::Index>(sound.size()), 3);
+    for (std::size_t i = 0; i < sound.size(); ++i) nominal.row(static_cast<Eigen::Index>(i)) = axes.row(sound[i]);
+    const auto fit = fit_axes(moving, nominal);
     if (!fit) return tl::unexpected(fit.error());
     if (!rested) keep_disagreement(*fit, rates, usable, sound, result.at_rest);
     take_axes(*fit, axes, sound, result);
     for (AxisVector& rate : rates) rate = rate.cwiseQuotient(fit->gain).eval();
-    const AxisVector deviation = result.at_rest.deviation_rad_s(sound).cwiseQuotient(fit->gain);
+    const AxisVector deviation = of_axes(result.at_rest.deviation_rad_s, sound).cwiseQuotient(fit->gain);
     result.motion = motion_figures(samples, rates, usable, fit->axes, deviation);
     result.cluster.jitter_along_s = result.motion->noise.along_s;
     result.cluster.jitter_across_s = result.motion->noise.across_s;
