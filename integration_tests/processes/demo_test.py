@@ -5,6 +5,8 @@ import xml.etree.ElementTree
 from integration_tests.harness.processes import CONFIGURATIONS, DATA, ROOT, ProcessTest
 
 RECORDING = DATA / "mimu4444_carlsson/exp_1/data.bin"
+SOFT_FLIGHT = DATA / "field/cats_drone_soft_axis_1.csv"
+SOUND_FLIGHT = DATA / "field/cats_drone_healthy.csv"
 
 
 def words_of(picture, kind):
@@ -87,6 +89,30 @@ class RecordingDemo(ProcessTest):
             CONFIGURATIONS / "mimu4444.yaml", "--log", RECORDING, "--speed", 4, "--set", "source.faults=[]", "--set", "expect={isolated: [], no_gap: true}"
         )
         self.assertEqual(code, 0, f"{summary}\n{stderr}")
+
+
+@unittest.skipUnless(SOFT_FLIGHT.exists(), f"no recording at {SOFT_FLIGHT}")
+class FlightDemo(ProcessTest):
+    """deploy/demo --log FILE on flights of three gyros, as they are."""
+
+    def fly(self, log):
+        code, summary, stderr = self.launch(CONFIGURATIONS / "flight.yaml", "--log", log, "--speed", 2)
+        self.assertEqual(code, 0, f"{summary}\n{stderr}")
+        self.assertEqual(len(summary["lanes"]), 3)
+        self.assertEqual(summary["voted"]["missing"], 0)
+        self.assertEqual(summary["voted"]["disordered"], 0)
+        return summary
+
+    def test_names_the_gyro_with_the_soft_axis_in_every_lane_and_goes_on_with_the_other_two(self):
+        summary = self.fly(SOFT_FLIGHT)
+        for name, lane in summary["lanes"].items():
+            self.assertEqual(lane["isolated"], [0, 1, 2], name)
+            self.assertEqual(lane["working"], [3, 4, 5, 6, 7, 8], name)
+
+    def test_names_nobody_on_a_sound_flight(self):
+        for name, lane in self.fly(SOUND_FLIGHT)["lanes"].items():
+            self.assertEqual(lane["isolated"], [], name)
+            self.assertEqual(lane["working"], list(range(9)), name)
 
 
 if __name__ == "__main__":

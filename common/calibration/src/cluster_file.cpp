@@ -38,7 +38,7 @@ std::string noise_text(const CalibratedCluster& cluster)
     return text + "}";
 }
 
-/// Of a bias that was seen in one rest alone no spread is known.
+/// A bias that was seen in one rest alone has no known spread.
 std::string spread_text(double spread_rad_s)
 {
     return spread_rad_s > 0 ? fmt::format("bias_spread_rad_s: {:.17g}, ", spread_rad_s) : std::string();

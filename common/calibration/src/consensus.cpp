@@ -15,9 +15,9 @@ constexpr double largest_gain_error = 0.10;
 constexpr double sigmas = 3;              // that an estimate must lie beyond its limit
 constexpr double huber_sigmas = 1.5;      // a residual beyond them pulls no harder
 constexpr int reweightings = 8;
-constexpr double sigma_of_median = 1.4826;  // of normal residuals, from their median magnitude
+constexpr double sigma_of_median = 1.4826;  // makes a standard deviation of normal residuals' median magnitude
 constexpr double colour = 4;              // so many averaged samples are one independent piece of information
-constexpr double least_contrast = 5;      // of the weakest motion to the disagreement
+constexpr double least_contrast = 5;      // the weakest motion's ratio to the disagreement
 constexpr double least_gain = 0.1;        // below it an axis has no direction
 constexpr std::size_t fewest_samples = 20;
 

@@ -138,15 +138,13 @@ TEST(FieldRules, dead_zone_keeps_a_long_rest_from_teaching_gains)
 
 TEST(FieldRules, smallest_angle_leaves_nothing_out_that_cannot_matter_to_the_attitude)
 {
+    // Single samples of 9 deg/s too much: 0.09 degrees each.
     const Scene scene{[](std::uint64_t seed) {
-                          FieldScene gentle(3, seed, Differences{.gain = 0.015, .noise_deg_s = 0.5});
-                          gentle.motion = [](double t) -> Eigen::Vector3d {
-                              if (t < 40) return {0.4 * std::sin(t), 0.3 * std::cos(1.3 * t), 0.2};
-                              return FieldScene::flight(t - 40) * std::min(1.0, t - 40);
-                          };
-                          return gentle;
+                          return spoiled(seed, [](std::uint64_t sequence, FieldScene::Rates& rates) {
+                              if (sequence > 600 && sequence % 500 == 0) rates[4] += 9;
+                          });
                       },
-                      70};
+                      30};
     EXPECT_EQ(play_all(scene).left_out_frames, 0U);
     EXPECT_GT(play_all(scene, &FieldRules::smallest_angle).left_out_frames, 0U);
 }

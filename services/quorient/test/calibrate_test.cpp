@@ -184,7 +184,7 @@ TEST_F(CalibrateVerb, sets_the_soft_axis_of_a_flight_aside_and_its_replay_isolat
     }
 }
 
-TEST_F(CalibrateVerb, sets_nothing_aside_on_sound_flights_and_their_replay_isolates_nobody)
+TEST_F(CalibrateVerb, sets_nothing_aside_on_sound_flights_and_field_isolates_nobody_in_their_replay)
 {
     const auto folder = data_dir() / "field";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no recordings under " << data_dir();
@@ -192,7 +192,8 @@ TEST_F(CalibrateVerb, sets_nothing_aside_on_sound_flights_and_their_replay_isola
         SCOPED_TRACE(log);
         const json calibration = calibration_of((folder / log).string());
         EXPECT_TRUE(calibration["outside_class"].empty()) << calibration["outside_class"];
-        for (const json& replay : calibration["replay"]) EXPECT_TRUE(replay["isolated"].is_null()) << replay;
+        EXPECT_EQ(calibration["replay"][0]["method"], "field");
+        EXPECT_TRUE(calibration["replay"][0]["isolated"].is_null()) << calibration["replay"];
         const bool several_rests = calibration["rest"].size() > 1;
         EXPECT_EQ(calibration["axes"][0]["bias_spread_rad_s"].is_null(), !several_rests);
     }

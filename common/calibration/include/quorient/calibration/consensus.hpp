@@ -28,7 +28,7 @@ struct Consensus {
     std::vector<OutsideClass> outside;              ///< in the order of the axes; empty where all are sound
     AxisMask outside_mask = 0;
     std::string ambiguous;                          ///< instruments disagree beyond their class and none can be named: why; or empty
-    std::vector<Eigen::Matrix3d> to_first;          ///< of each instrument: the rotation from its own frame to the first one's; filled where axes are outside
+    std::vector<Eigen::Matrix3d> to_first;          ///< per instrument: rotation from its own frame to the first one's; filled where axes are outside
 };
 
 /// Compares the instruments of an array pair by pair. For an axis a of an instrument and the rates w_j of another one, robust least squares
