@@ -68,11 +68,11 @@ TEST(FastTypes, are_on_the_wire_four_bytes_and_their_memory_image)
         auto support = fastdds::type_support_of(static_cast<TypeId>(type));
         SCOPED_TRACE(support.get_type_name());
         void* sample = support.create_data();
-        eprosima::fastrtps::rtps::SerializedPayload_t payload(support.get_serialized_size_provider(sample)());
+        fastdds::wire::SerializedPayload_t payload(fastdds::serialized_size(support, sample));
         const std::size_t size = payload.max_size - 4;
         auto* const image = static_cast<std::uint8_t*>(sample);
         for (std::size_t i = 0; i < size; ++i) image[i] = static_cast<std::uint8_t>(7 * i + i / 256 + 1);
-        ASSERT_TRUE(support.serialize(sample, &payload));
+        ASSERT_TRUE(fastdds::serialize(support, sample, payload));
         ASSERT_EQ(payload.length, size + 4);
         EXPECT_EQ(std::vector<std::uint8_t>(payload.data, payload.data + 4), (std::vector<std::uint8_t>{0, 1, 0, 0})) << "plain CDR, little-endian";
         EXPECT_EQ(std::vector<std::uint8_t>(payload.data + 4, payload.data + payload.length), std::vector<std::uint8_t>(image, image + size));
