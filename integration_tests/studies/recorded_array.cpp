@@ -96,7 +96,8 @@ tl::expected<Recording, std::string> load_recording(const std::filesystem::path&
     auto calibration = calibration::calibrate(recording.samples, recording.nominal);
     if (!calibration) return tl::unexpected(fmt::format("{}: {}", log.string(), calibration.error()));
     recording.calibration = std::move(*calibration);
-    recording.calibration.cluster.motion_level = calibration::motion_level(recording.samples, recording.calibration).value_or(0);
+    const auto motion = calibration::motion_level(recording.samples, recording.calibration);
+    recording.calibration.cluster.motion_level = motion ? motion->level : 0;
     recording.calibration.cluster.gated = calibration::gated_terms(recording.samples, recording.nominal, recording.calibration);
     return recording;
 }
