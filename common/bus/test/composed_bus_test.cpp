@@ -173,7 +173,7 @@ TEST_P(ComposedBus, leaves_the_choice_of_the_owner_to_the_vendor)
     auto weak = composed->advertise(topics::voted, {.strength = 1, .lease_s = 1});
     auto strong = other->advertise(topics::voted, {.strength = 2, .lease_s = 1});
     auto subscription = composed->subscribe(topics::voted);
-    ASSERT_TRUE(eventually([&] { return subscription.status().matched == 2; }));
+    ASSERT_TRUE(eventually([&] { return subscription.status().matched == 2 && strong.status().matched == 1 && weak.status().matched == 1; }));
     const auto voted_by = [](std::uint32_t voter, std::uint64_t sequence) {
         VotedAttitude voted;
         voted.unit = 1;

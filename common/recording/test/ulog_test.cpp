@@ -176,7 +176,7 @@ TEST(Ulog, says_what_the_logger_lost)
     UlogWriter writer;
     writer.dropout(30);
     writer.dropout(12);
-    EXPECT_THAT(samples_of(writer.log.data).remarks, ElementsAre(AllOf(HasSubstr("2 times"), HasSubstr("42 ms"))));
+    EXPECT_THAT(samples_of(writer.log.data).remarks, ElementsAre(AllOf(HasSubstr("2 dropouts"), HasSubstr("42 ms"))));
 }
 
 TEST(Ulog, refuses_logs_that_need_a_newer_reader)

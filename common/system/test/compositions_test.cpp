@@ -45,7 +45,7 @@ TEST(Compositions, stand_in_the_configuration_that_check_prints)
 
 TEST(Compositions, have_known_names_once)
 {
-    EXPECT_THAT(with_compositions("[[fdi-a, attitude-c]]"), HasSubstr("system.yaml:9:18: compose[0][1]: no process 'attitude-c'; there are voter-1"));
+    EXPECT_THAT(with_compositions("[[fdi-a, attitude-c]]"), HasSubstr("system.yaml:9:19: compose[0][1]: no process 'attitude-c'; there are voter-1"));
     EXPECT_THAT(with_compositions("[[fdi-a, fdi-a]]"), HasSubstr("compose[0][1]: 'fdi-a' stands there twice"));
     EXPECT_THAT(with_compositions("[[fdi-a, attitude-a], [fdi-b, fdi-a]]"), HasSubstr("compose[1][1]: 'fdi-a' stands in another composition, too"));
     EXPECT_THAT(with_compositions("[[fdi-a]]"), HasSubstr("compose[0]: a composition has two names at least"));
