@@ -1,6 +1,6 @@
 #include "attitude_events.hpp"
 
-#include "quorient/messages/left_out.hpp"
+#include "quorient/messages/limits.hpp"
 #include "quorient/messages/meaning.hpp"
 #include "quorient/messages/words.hpp"
 #include "quorient/rotation/quaternion.hpp"
@@ -32,10 +32,10 @@ void AttitudeEvents::report_changes(const AttitudeState& attitude, const Cluster
 void AttitudeEvents::report_correction(const AttitudeState& attitude, const ClusterDescription& description)
 {
     if (attitude.rolled_back_frames == 0) return;
-    const AxisMask without = left_out_mask(attitude);
+    const AxisMask without = all_axes(description.axis_count) & ~attitude.used_mask;
     node_.report(EventCode::rolled_back, Severity::info, identity_of(attitude), without,
-                 fmt::format("attitude corrected by {:.3g} deg: {} frames integrated again without {}; {} axes in use",
-                             rotation::angle_of(attitude.reset_rotation) * 180 / std::numbers::pi, attitude.rolled_back_frames,
+                 fmt::format("attitude corrected by {:.3g} deg: the last {} integrated again without {}; {} axes in use",
+                             rotation::angle_of(attitude.reset_rotation) * 180 / std::numbers::pi, attitude.rolled_back_frames == 1 ? std::string{"frame"} : fmt::format("{} frames", attitude.rolled_back_frames),
                              axis_names(description, without), std::popcount(attitude.used_mask)));
 }
 

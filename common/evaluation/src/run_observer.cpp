@@ -166,8 +166,14 @@ void RunObserver::on_voted(const VotedAttitude& voted)
     voted_.heard = true;
     const bool held = level_of(voted) == VoteLevel::coasting || level_of(voted) == VoteLevel::lost;
     if (held) return;
+    voted_.frame_level = level_of(voted);
     if (voted.epoch >= newest_truth_.epoch && voted_sequences_[voted.epoch].insert(voted.sequence).second) ++voted_.frames;
     compare(identity_of(voted), voted.attitude, voted_.errors);
+}
+
+VoteLevel RunObserver::final_level() const
+{
+    return source_ended_ ? voted_.frame_level : level_of(voted_.latest);
 }
 
 std::uint64_t RunObserver::missing_voted() const

@@ -30,7 +30,7 @@ protected:
         observer->on_truth(sample);
     }
 
-    void voted(std::uint64_t epoch, std::uint64_t sequence)
+    void voted(std::uint64_t epoch, std::uint64_t sequence, VoteLevel level = VoteLevel::full)
     {
         VotedAttitude sample;
         sample.unit = 1;
@@ -38,7 +38,7 @@ protected:
         sample.sequence = sequence;
         sample.output_sequence = ++output;
         sample.attitude = {1, 0, 0, 0};
-        sample.level = octet(VoteLevel::full);
+        sample.level = octet(level);
         observer->on_voted(sample);
     }
 
@@ -55,6 +55,23 @@ protected:
     std::optional<RunObserver> observer;
     std::uint64_t output = 0;
 };
+
+TEST_F(RunObserverTest, ends_with_the_level_of_the_last_frame_where_the_source_ended_in_order)
+{
+    frames(own, 0, 100);
+    voted(own, 99, VoteLevel::coasting);
+    observer->on_source_ended();
+    voted(own, 99, VoteLevel::lost);
+    EXPECT_EQ(observer->final_level(), VoteLevel::full);
+}
+
+TEST_F(RunObserverTest, ends_with_a_lost_level_where_the_source_fell_silent)
+{
+    frames(own, 0, 100);
+    voted(own, 99, VoteLevel::coasting);
+    voted(own, 99, VoteLevel::lost);
+    EXPECT_EQ(observer->final_level(), VoteLevel::lost);
+}
 
 TEST_F(RunObserverTest, counts_no_frame_of_a_second_publisher_that_services_ignore_as_missing)
 {

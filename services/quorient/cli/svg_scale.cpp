@@ -5,6 +5,12 @@
 
 namespace quorient::cli {
 
+namespace {
+
+constexpr double most_decades = 5;  // of a logarithmic scale: what lies below stands at its foot
+
+}  // namespace
+
 bool Scale::shows(double value) const
 {
     return std::isfinite(value) && (spacing_ == Spacing::linear || value > 0);
@@ -20,6 +26,7 @@ void Scale::include(double value)
 void Scale::settle(double ticks)
 {
     if (lowest_ > highest_) lowest_ = highest_ = 0;
+    if (spacing_ == Spacing::logarithmic) lowest_ = std::max(lowest_, highest_ - most_decades);
     const double span = highest_ > lowest_ ? highest_ - lowest_ : 1.0;
     step_ = spacing_ == Spacing::logarithmic ? std::max(1.0, std::ceil(span / ticks)) : round_step(span, ticks);
     lowest_ = std::floor(lowest_ / step_ + 1e-9) * step_;

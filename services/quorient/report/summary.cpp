@@ -57,7 +57,7 @@ std::string summary_without_truth(const system::System& system, const evaluation
     std::string text = fmt::format("{}: no truth was published, so neither faults nor errors nor missing frames are known\n", system.name);
     for (const auto& lane : run.lanes())
         text += fmt::format("lane {:<4}{:<11}{} frames, {}\n", lane.name, bus::to_string(lane.vendor), lane.frames, isolation_text(run, lane));
-    return text + fmt::format("voted    {} frames, level {}\n", run.voted().frames, to_string(level_of(run.voted().latest)));
+    return text + fmt::format("voted    {} frames, level {}\n", run.voted().frames, to_string(run.final_level()));
 }
 
 nlohmann::ordered_json errors_json(const evaluation::Errors& errors)
@@ -84,7 +84,7 @@ std::string summary_text(const system::System& system, const evaluation::RunObse
     }
     const auto& voted = run.voted();
     text += fmt::format("voted    {} frames, {} missing, level {}; attitude error {}\n", voted.frames, run.missing_voted(),
-                        to_string(level_of(voted.latest)), error_text(voted.errors));
+                        to_string(run.final_level()), error_text(voted.errors));
     text += undecided_text(run);
     if (run.without_rollback().compared > 0)
         text += fmt::format("without roll-back and leaving out suspects (lane {}'s verdicts): attitude error {}\n",
@@ -119,7 +119,7 @@ nlohmann::ordered_json summary_json(const system::System& system, const evaluati
     json["voted"] = {{"frames", run.voted().frames},
                      {"missing", run.missing_voted()},
                      {"disordered", run.voted().disordered},
-                     {"level", to_string(level_of(run.voted().latest))},
+                     {"level", to_string(run.final_level())},
                      {"attitude", errors_json(run.voted().errors)}};
     json["undecided_s"] = undecided_s_json(run);
     json["undecided"] = undecided_json(run);

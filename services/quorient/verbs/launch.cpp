@@ -222,8 +222,12 @@ private:
         for (const auto& name : processes_.look(clock_.steady_ns())) {
             const auto& child = *processes_.find(name);
             if (child.daemon) continue;
-            if (&child == processes_.find_member(system_.sensor.process.node.name) && child.exit_code == 0) end.set(clock_.steady_ns() + linger_ns);
-            else if (child.exit_code != 0) tell_death(child);
+            if (&child == processes_.find_member(system_.sensor.process.node.name) && child.exit_code == 0) {
+                observer_.on_source_ended();
+                end.set(clock_.steady_ns() + linger_ns);
+            } else if (child.exit_code != 0) {
+                tell_death(child);
+            }
         }
     }
 

@@ -54,6 +54,7 @@ struct LaneRecord {
 struct VotedRecord {
     VotedAttitude latest;
     bool heard = false;
+    VoteLevel frame_level = VoteLevel::unknown;  ///< of the latest attitude that came from a frame, neither held nor lost
     std::uint64_t frames = 0;      ///< distinct identities
     std::uint64_t disordered = 0;  ///< output_sequence that did not increase, of one voter
     Errors errors;
@@ -74,6 +75,8 @@ public:
     void on_verdict(const FaultVerdict& verdict);
     void on_attitude(const AttitudeState& attitude);
     void on_voted(const VotedAttitude& voted);
+    /// The publisher has ended in order: the level that falls behind its last frame is no fault.
+    void on_source_ended() { source_ended_ = true; }
 
     /// Called with each error of voted() and without_rollback() that is found from now on, and with the truth that it was found with.
     using Watch = std::function<void(const Errors& of, const TruthState& truth, double error_rad)>;
@@ -81,6 +84,9 @@ public:
 
     const std::vector<LaneRecord>& lanes() const { return lanes_; }
     const VotedRecord& voted() const { return voted_; }
+
+    /// The level at the end of the run: at its last frame where the source ended in order, else now.
+    VoteLevel final_level() const;
 
     /// Attitude of the first lane's axes if verdicts acted only from their own frame on.
     const Errors& without_rollback() const { return without_rollback_; }
@@ -143,6 +149,7 @@ private:
     std::vector<Waiting> waiting_;
     std::optional<Identity> fault_began_;
     std::optional<Identity> fault_ended_;
+    bool source_ended_ = false;
     AxisMask faulty_ = 0;
     Spells faults_{longest_pause_s};
     std::uint64_t truth_frames_ = 0;
