@@ -1,4 +1,5 @@
 """One rule of exit codes for all verbs: a table of verbs times outcomes. `python3 -m integration_tests.processes.exit_codes_test --table` measures it."""
+import functools
 import os
 import re
 import subprocess
@@ -30,7 +31,7 @@ CELLS = {
     "replay": {"done": ("{folder}/rest.csv", "--system", "{folder}/demo.yaml"), "bad usage": ("{folder}/rest.csv", "--system", "{folder}/demo.yaml", "--from", 1, "--to", 0.5),
                "bad input": ("{folder}/no.csv", "--system", "{folder}/demo.yaml"), "nothing to do": ("{folder}/rest.csv", "--system", "{folder}/demo.yaml", "--from", 1000),
                "not as asked": ("{folder}/rest.csv", "--system", "{folder}/demo.yaml", "--set", "expect={isolated: [1]}"),
-               "file not written": ("{folder}/rest.csv", "--system", "{folder}/demo.yaml", "--verdicts", "/dev/full"),
+               "disk full": ("{folder}/rest.csv", "--system", "{folder}/demo.yaml", "--verdicts", "/dev/full"),
                "file exists": ("{folder}/rest.csv", "--system", "{folder}/demo.yaml", "--events", "{folder}/taken")},
     "design": {"done": ("--axes", 4, "--starts", 1, "--designs", 1), "bad usage": ("--axes", -1), "bad input": ("{folder}/no.yaml",), "nothing to do": ()},
     "diagnose": {"done": ("{folder}/triads.csv",), "bad usage": ("{folder}/triads.csv", "--lsb-per-deg-s", 0), "bad input": ("{folder}/no.csv",), "nothing to do": ("{folder}/empty.csv",),
@@ -75,7 +76,7 @@ CODES = {"done": DONE, "not as asked": NOT_AS_ASKED, "bad usage": REFUSED, "bad 
 SPEAKS_ON_STDOUT = {("assess", "not as asked"), ("inject", "not as asked"), ("readmit", "not as asked")}  # rows, and the answers of services
 
 LIVE_SYSTEM = """
-unit: {{layout: dodecahedron}}
+unit: {{id: 1, layout: dodecahedron}}
 source: {{motion: {{kind: coning, k2: 0.084, k3: 0.05}}, duration_s: {duration_s}, noise_rad: 1.0e-6}}
 lanes: [{{name: a, detector: {{method: subset}}}}, {{name: b, detector: {{method: glt}}}}, {{name: c, detector: {{method: subset}}}}]
 voters: [{{name: voter-1}}, {{name: voter-2}}]
@@ -105,7 +106,9 @@ class VerbsTest(ProcessTest):
         (self.run_directory / "disk").mkdir()
 
     def filled(self, arguments):
-        return [str(argument).format(folder=self.run_directory, disk=self.run_directory / "disk", domain=self.domain, quiet=self.quiet) for argument in arguments]
+        """With the places in braces filled in; other braces are YAML."""
+        places = {"{folder}": self.run_directory, "{disk}": self.run_directory / "disk", "{domain}": self.domain, "{quiet}": self.quiet}
+        return [functools.reduce(lambda text, place: text.replace(place, str(places[place])), places, str(argument)) for argument in arguments]
 
     def verb(self, verb, *arguments, before=(), timeout=60, **options):
         options = {"stdout": subprocess.PIPE, "stdin": subprocess.DEVNULL, **options}
