@@ -140,7 +140,7 @@ class VerbsTest(ProcessTest):
 
     def isolated(self):
         """Whether all three lanes isolate axis 2, or none does."""
-        ended = self.verb("echo", "verdict", "--json", "--count", 12, "--timeout", 5, *SOON)
+        ended = self.verb("echo", "verdict", "--json", "--count", 250, "--timeout", 5, *SOON)  # behind each history of 64
         masks = {}
         for line in ended.stdout.splitlines():
             verdict = exact_json.loads(line)

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,18 @@ std::string described(const std::vector<runtime::Pulse>& pulses)
     return fmt::format("{}", fmt::join(all, "; "));
 }
 
+/// What there is in place of the one asked for: its namesakes, else the names of all.
+std::string others(const std::vector<runtime::Pulse>& all, const std::string& name)
+{
+    if (all.empty()) return "there is none at all (another QUORIENT_RUN_DIR?)";
+    auto namesakes = all;
+    std::erase_if(namesakes, [&](const runtime::Pulse& pulse) { return pulse.service != name; });
+    if (!namesakes.empty()) return "there is " + described(namesakes);
+    std::set<std::string> names;
+    for (const auto& pulse : all) names.insert(pulse.service);
+    return fmt::format("there are those of {}", fmt::join(names, ", "));
+}
+
 /// @throws Exit where there is none, or more than one: an answer for another system's process would be worse than none.
 runtime::Pulse only_one(const HealthOptions& options)
 {
@@ -47,8 +60,7 @@ runtime::Pulse only_one(const HealthOptions& options)
     if (asked_for.size() == 1) return asked_for.front();
     const auto asked = fmt::format("{}{}{}", options.name, options.domain ? fmt::format(" in domain {}", *options.domain) : "",
                                    options.unit ? fmt::format(" of unit {}", *options.unit) : "");
-    fmt::print(stderr, "{}: no heartbeat in {}; {}\n", asked, runtime::run_directory().string(),
-               all.empty() ? "there is none at all (another QUORIENT_RUN_DIR?)" : "there are those of " + described(all));
+    fmt::print(stderr, "{}: no heartbeat in {}; {}\n", asked, runtime::run_directory().string(), others(all, options.name));
     throw Exit{ExitCode::not_as_asked};
 }
 
