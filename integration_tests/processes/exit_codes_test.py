@@ -59,7 +59,7 @@ LIVE = {
     "readmit": {"done": ("--axis", 2, *SOON), "not as asked": ("--axis", 0, *SOON)},
     "reset": {"done": ("--attitude", "1,0,0,0", *SOON), "not as asked": ("--attitude", "1,0,0,0", "--domain", "{quiet}")},
     "record": {"done": ("{folder}/live.csv", "--force", "--duration", 1, *SOON)},
-    "health": {"done": ("voter-1",)},
+    "health": {"done": ("voter-1", *SOON)},  # the short run on the quiet domain left heartbeats, too
 }
 # Verbs that write files. {disk} is full, or read-only.
 WRITING = {
