@@ -54,7 +54,7 @@ struct LaneRecord {
 struct VotedRecord {
     VotedAttitude latest;
     bool heard = false;
-    VoteLevel frame_level = VoteLevel::unknown;  ///< of the latest attitude that came from a frame, neither held nor lost
+    VoteLevel frame_level = VoteLevel::unknown;  ///< the level at the latest attitude that came from a frame, neither held nor lost
     std::uint64_t frames = 0;      ///< distinct identities
     std::uint64_t disordered = 0;  ///< output_sequence that did not increase, of one voter
     Errors errors;
