@@ -150,7 +150,9 @@ class SimulatedLog(ProcessTest):
         self.assertIn("--lsb-per-deg-s", refused.stderr)
         result = self.run_program(*command, "--lsb-per-deg-s", 16.4)
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn("source.rate_hz is 62.5, and the log has 100 frames a second", json.loads(result.stdout)["log"])
+        self.assertNotIn("rate_hz", json.loads(result.stdout)["log"])
+        doubted = self.run_program(*command, "--lsb-per-deg-s", 16.4, "--set", "source.rate_hz=50")
+        self.assertIn("source.rate_hz is 50, and the log has 100 frames a second", json.loads(doubted.stdout)["log"])
 
     def test_refuses_a_log_that_is_not_there(self):
         result = self.run_program("quorient", "replay", "nosuch.csv", "--system", CONFIGURATIONS / "demo.yaml")

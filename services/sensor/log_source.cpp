@@ -40,11 +40,11 @@ tl::expected<recording::MergedLogs, std::string> open(const system::SensorSettin
 }
 
 /// The file's rate against the log's own time stamps.
-std::optional<std::string> doubted_rate(double logged_hz, double stated_hz)
+std::optional<std::string> doubted_rate(double logged_hz, std::optional<double> stated)
 {
     constexpr double tolerance = 0.1;
-    if (std::abs(stated_hz / logged_hz - 1) <= tolerance) return std::nullopt;
-    return fmt::format("source.rate_hz is {:.4g}, and the log has {:.4g} frames a second by its own time stamps", stated_hz, logged_hz);
+    if (!stated || std::abs(*stated / logged_hz - 1) <= tolerance) return std::nullopt;
+    return fmt::format("source.rate_hz is {:.4g}, and the log has {:.4g} frames a second by its own time stamps", *stated, logged_hz);
 }
 
 class LogSource final : public FrameSource {
@@ -58,7 +58,7 @@ public:
           from_s_(settings.source.log->from_s),
           to_s_(settings.source.log->to_s.value_or(std::numeric_limits<double>::infinity()))
     {
-        if (auto doubt = doubted_rate(1 / reader_->description().interval_s, 1 / settings.source.scenario.interval_s)) remarks_.push_back(std::move(*doubt));
+        if (auto doubt = doubted_rate(1 / reader_->description().interval_s, settings.source.log->stated_rate_hz)) remarks_.push_back(std::move(*doubt));
         remarks_.insert(remarks_.end(), logs.remarks.begin(), logs.remarks.end());
     }
 

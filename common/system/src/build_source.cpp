@@ -149,6 +149,7 @@ void build_source(File& file, System& system, Report& report)
 {
     auto& source = file.source;
     system.interval_s = interval_s_of(file);
+    const auto stated_rate_hz = source.rate_hz;
     source.rate_hz = rate_hz_of(file);
     system.sensor.source.speed = source.speed;
     if (unit_kind(file.unit.kind).has_model) return build_vessel_source(source, system, report);
@@ -160,6 +161,7 @@ void build_source(File& file, System& system, Report& report)
     switch (source.kind) {
         case Kind::log:
             build_log(file, source, system, report);
+            system.sensor.source.log->stated_rate_hz = stated_rate_hz;
             break;
         case Kind::ros2_imu:
             build_imus(source, system, report);

@@ -47,6 +47,7 @@ struct LogSettings {
     std::optional<calibration::CalibratedCluster> calibration;  ///< axes, gains and noise of these very sensors
     double from_s = 0;
     std::optional<double> to_s;
+    std::optional<double> stated_rate_hz;  ///< as the file says; its default is no claim about the log
 };
 
 /// One IMU of a robot, heard as sensor_msgs/Imu.
