@@ -37,10 +37,10 @@ def print_study():
 def print_removals(cluster):
     arguments = ("design", "--keep", cluster, "--remove", "--fault", "instrument")
     removals = exact_json.loads(run("quorient", *arguments, "--json")[0])["removals"]
-    print("`quorient design --keep cluster.yaml --remove --fault instrument`: which of the eight may go, the cheapest first.\n")
+    print("`quorient design --keep cluster.yaml --remove --fault instrument`: which of the eight may go, the cheapest first, with the noise that was calibrated [rad].\n")
     print("| instrument removed | trace | condition | worst trace after 1 |\n|---|---|---|---|")
     for removal in removals:
-        print(f"| {removal['instrument']} | {removal['trace']:.8f} | {removal['condition']:.8f} | {removal['worst_after'][0]['trace']:.8f} |")
+        print(f"| {removal['instrument']} | {removal['trace']:.5e} | {removal['condition']:.5f} | {removal['worst_after'][0]['trace']:.5e} |")
 
 
 def print_growth(cluster):
