@@ -96,12 +96,6 @@ void Heartbeat::beat(std::int64_t steady_ns, std::uint64_t frames)
     if (::pwrite(file_, line.data(), beat_length, 0) < 0) return;  // a full disk must not stop a service
 }
 
-std::optional<Beat> read_heartbeat(const std::string& service)
-{
-    const auto pulse = read_pulse(file_of(stem_of(service)));
-    return pulse ? std::optional(pulse->beat) : std::nullopt;
-}
-
 void set_heartbeat_owner(HeartbeatOwner of_this_process)
 {
     owner() = std::move(of_this_process);

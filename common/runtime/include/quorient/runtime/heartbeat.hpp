@@ -32,7 +32,4 @@ struct Beat {
     std::uint64_t frames = 0;
 };
 
-/// The last beat of a service, if it ever left one.
-std::optional<Beat> read_heartbeat(const std::string& service);
-
 }  // namespace quorient::runtime
