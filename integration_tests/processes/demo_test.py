@@ -112,7 +112,6 @@ class FlightDemo(ProcessTest):
     def test_names_nobody_on_a_sound_flight(self):
         for name, lane in self.fly(SOUND_FLIGHT)["lanes"].items():
             self.assertEqual(lane["isolated"], [], name)
-            self.assertEqual(lane["working"], list(range(9)), name)
 
 
 if __name__ == "__main__":

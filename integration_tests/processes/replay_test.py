@@ -1,6 +1,7 @@
 """quorient replay: the whole system offline, the same bytes on every run."""
 import csv
 import itertools
+import json
 import math
 import pathlib
 import shutil

@@ -65,7 +65,7 @@ class ServiceManager(ProcessTest):
 
     def test_a_composition_is_ready_once_and_feeds_the_watchdog_when_all_its_services_handle_frames(self):
         self.start("quorient-run", CONFIGURATIONS / "demo.yaml", "fdi-a", "attitude-a", "--domain", self.domain)
-        self.eventually(lambda: (self.run_directory / "attitude-a.heartbeat").exists(), "the composition is up")
+        self.eventually(lambda: self.heartbeat("attitude-a").exists(), "the composition is up")
         self.assertIsNone(self.hear(self.WATCHDOG_S))
         managed = self.environment
         self.environment = {name: value for name, value in managed.items() if name != "NOTIFY_SOCKET"}
