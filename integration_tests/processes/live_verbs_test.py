@@ -74,7 +74,7 @@ class LiveVerbs(ProcessTest):
 
     def test_status_that_is_watched_goes_on_until_it_is_interrupted(self):
         watching = self.start("quorient", "status", "--domain", self.domain, "--json", "--watch", "--seconds", 0.5)
-        seen = [json.loads(watching.stdout.readline()) for _ in range(6)]
+        seen = [exact_json.loads(watching.stdout.readline()) for _ in range(6)]
         self.assertIn("attitude", seen[-1]["standing"]["text"])
         self.assertEqual(len(seen[-1]["services"]), 9)
         watching.send_signal(signal.SIGINT)

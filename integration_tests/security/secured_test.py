@@ -155,7 +155,7 @@ class Expiry(WithKeys):
     def events(self):
         """The events so far: each service offers its last ones to a late reader."""
         lines = self.run_program("quorient", "echo", "event", "--json", "--count", 1000, "--timeout", 3, "--domain", self.domain, "--keys", self.keys).stdout
-        return [json.loads(line) for line in lines.splitlines()]
+        return [exact_json.loads(line) for line in lines.splitlines()]
 
 
 class Orders(ProcessTest):
