@@ -60,7 +60,7 @@ class UnitLimits(ProcessTest):
         self.units = sorted(UNITS.glob("*.service"))
 
     def test_are_the_same_in_every_unit(self):
-        self.assertEqual(len(self.units), 5)
+        self.assertEqual(len(self.units), 6)
         for key in ("SystemCallFilter", "RestrictAddressFamilies", "MemoryDenyWriteExecute"):
             self.assertEqual(len({tuple(setting(unit, key)) for unit in self.units}), 1, key)
 

@@ -83,7 +83,7 @@ int run(int argc, char** argv)
     settings.participant = fmt::format("{}", fmt::join(*names, "+"));
     const auto bus = bus::open_composed(settings);
     if (!bus) return runtime::report(bus.error());
-    return host::serve(**bus, *processes);
+    return host::serve(**bus, system->name, *processes);
 }
 
 }  // namespace quorient::composition

@@ -24,19 +24,19 @@ int run_role(int argc, char** argv, const Role& role)
     const auto process = role.find(*system, options->name);
     if (!process) return runtime::report(process.error());
 
-    runtime::set_heartbeat_owner({system->name, process->settings.bus.domain, process->settings.node.unit});
     const auto bus = bus::open(process->settings.bus);
     if (!bus) return runtime::report(bus.error());
 
-    return serve(**bus, {*process});
+    return serve(**bus, system->name, {*process});
 }
 
 }  // namespace
 
-int serve(bus::Bus& bus, const std::vector<Process>& processes)
+int serve(bus::Bus& bus, const std::string& system, const std::vector<Process>& processes)
 {
     assert(!processes.empty());
     const auto& settings = processes.front().settings;
+    runtime::set_heartbeat_owner({system, settings.bus.domain, settings.node.unit});
     const runtime::SystemClock clock;
     runtime::EventLoop loop{bus, clock, runtime::termination_requested()};
     loop.spin(settings.spin);

@@ -51,8 +51,8 @@ struct Role {
 };
 
 /// Runs the services of these processes on one event loop until they end or are told to stop. Their bus and real-time settings are the
-/// same. @returns the exit code
-int serve(bus::Bus& bus, const std::vector<Process>& processes);
+/// same. @param system  name of their system, for their heartbeats. @returns the exit code
+int serve(bus::Bus& bus, const std::string& system, const std::vector<Process>& processes);
 
 /// main() of a service: reads the command line and the system file, joins the bus, runs until it is told to stop.
 /// @returns the exit code: 0 ended in order, 1 failed while running, 2 bad usage or configuration (explained on stderr).
