@@ -81,7 +81,7 @@ class Viewer(MonitoredSystem):
             rotation = turn["message"]["rotation"]
             self.assertAlmostEqual(sum(part * part for part in rotation.values()), 1, delta=1e-9)
         self.assertLess(found["messages"]["/attitude"][-1]["message"]["error_rad"], 1e-5)
-        self.assertEqual(found["messages"]["/level"][-1]["message"]["level"], "FULL")
+        self.assertEqual(found["messages"]["/level"][-1]["message"]["level"], "DEGRADED" if protocol == PROTOCOLS[1] else "FULL")
         isolated = {axis["name"] for axis in found["messages"]["/axes"][-1]["message"]["axes"] if axis["state"] == "isolated"}
         self.assertEqual(isolated, {"G2"} if protocol == PROTOCOLS[1] else set())
 

@@ -75,6 +75,7 @@ public:
     void begin(const std::string& request, const std::string& protocol)
     {
         auto timeout = websocket::stream_base::timeout::suggested(beast::role_type::server);
+        timeout.handshake_timeout = std::chrono::seconds{5};  // also how long a viewer may take to confirm the close
         timeout.idle_timeout = shared_.limits.silence;
         timeout.keep_alive_pings = true;
         stream_.set_option(timeout);
