@@ -7,11 +7,8 @@ namespace quorient::bus::cyclonedds {
 
 bool ContractCheck::accepts(dds_instance_handle_t writer)
 {
-    for (const auto& known : answers_)
-        if (known.writer == writer) return known.accepted;
-    auto& answer = answers_[next_++ % answers_.size()];
-    answer = {writer, ask(writer)};
-    return answer.accepted;
+    if (const auto known = accepted_.find(writer); known != accepted_.end()) return known->second;
+    return accepted_.emplace(writer, ask(writer)).first->second;
 }
 
 bool ContractCheck::ask(dds_instance_handle_t writer)

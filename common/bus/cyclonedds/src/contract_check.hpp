@@ -3,13 +3,13 @@
 #include "quorient/bus/refusals.hpp"
 
 #include <dds/dds.h>
-#include <array>
-#include <cstddef>
+#include <unordered_map>
 
 namespace quorient::bus::cyclonedds {
 
 /// Whether a reader accepts a writer's samples: not those of a participant that announces another wire contract. Cyclone DDS 0.10 cannot
-/// ignore a participant, so each reader asks once for each writer and keeps the answer.
+/// ignore a participant, so each reader asks once for each writer and keeps the answer; handles are not used again. A writer that has left
+/// before its first sample was taken is accepted: nobody knows any more what it announced, and the order of a tool that ends must not be lost.
 class ContractCheck {
 public:
     /// @param refusals  receives a text for each participant that is refused; must outlive this.
@@ -19,17 +19,11 @@ public:
     bool accepts(dds_instance_handle_t writer);
 
 private:
-    struct Answer {
-        dds_instance_handle_t writer = 0;
-        bool accepted = true;
-    };
-
     bool ask(dds_instance_handle_t writer);
 
     dds_entity_t reader_;
     Refusals& refusals_;
-    std::array<Answer, 16> answers_{};  ///< a ring: of more writers than this, the oldest is asked for again
-    std::size_t next_ = 0;
+    std::unordered_map<dds_instance_handle_t, bool> accepted_;
 };
 
 }  // namespace quorient::bus::cyclonedds

@@ -177,7 +177,7 @@ public:
           transports_(transports),
           peers_(peers),
           own_(std::move(own)),
-          participant_(reader->guid().guidPrefix)
+          participant_(prefix_of(reader->get_instance_handle()))
     {
         if (own_) ++own_->readers;
         reader_->get_statuscondition().set_enabled_statuses(dds::StatusMask::data_available());
@@ -215,16 +215,13 @@ public:
                 policy_name(incompatible.last_policy_id), transports_.in_use, transports_.asked};
     }
 
-    Sender sender() override
-    {
-        return peers_.sender(prefix_of(writer_));
-    }
+    Sender sender() override { return peers_.sender(prefix_of(writer_)); }
 
 private:
     /// Fast DDS 2.9 cannot ignore the writers of its own participant.
     bool is_skipped(const dds::SampleInfo& info) const
     {
-        return own_ && eprosima::fastrtps::rtps::iHandle2GUID(info.publication_handle).guidPrefix == participant_;
+        return own_ && prefix_of(info.publication_handle) == participant_;
     }
 
     dds::Subscriber* subscriber_;
@@ -236,7 +233,7 @@ private:
     Transports transports_;
     const fastdds::Peers& peers_;
     std::shared_ptr<OwnEndpoints> own_;
-    eprosima::fastrtps::rtps::GuidPrefix_t participant_;
+    GuidPrefix participant_;
     dds::InstanceHandle_t writer_;  ///< the writer of the sample taken last
 };
 

@@ -31,14 +31,15 @@ void Peers::on_participant(const SeenParticipant& participant)
     if (participant.gone) names_.erase(guid);
     else names_[guid] = participant.name;
     if (other) of_other_contract_.insert(guid);
-    else of_other_contract_.erase(guid);
+    else if (!participant.gone) of_other_contract_.erase(guid);  // what it sent before it left may still wait in a reader
     refuses_any_ = !of_other_contract_.empty();
 }
 
 void Peers::onParticipantAuthentication(dds::DomainParticipant*, wire::ParticipantAuthenticationInfo&& info)
 {
     if (info.status == wire::ParticipantAuthenticationInfo::UNAUTHORIZED_PARTICIPANT)
-        refusals_.add(RefusalReason::security, fmt::format("refuses '{}': its certificate is not valid, or not its own", sender(plain(info.guid.guidPrefix)).name));
+        refusals_.add(RefusalReason::security,
+                      fmt::format("refuses '{}': its certificate is not valid, or not its own", sender(plain(info.guid.guidPrefix)).name));
 }
 
 bool Peers::refuses(const GuidPrefix& guid) const

@@ -2,20 +2,20 @@
 
 #include "../../test/other_contract_scene.hpp"
 #include "../src/types.hpp"
+#include "../src/version.hpp"
 
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <cstring>
 
 namespace quorient::bus {
 
 namespace {
 
-namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastdds::rtps;
+namespace dds = fastdds::dds;
+namespace rtps = fastdds::rtps;
 
 class PlainWriter {
 public:
@@ -49,7 +49,7 @@ public:
     void write(const FaultVerdict& verdict)
     {
         std::memcpy(sample_, &verdict, sizeof verdict);
-        EXPECT_TRUE(writer_->write(sample_));
+        EXPECT_TRUE(fastdds::is_ok(writer_->write(sample_)));
     }
 
 private:

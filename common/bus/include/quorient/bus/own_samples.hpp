@@ -16,7 +16,7 @@ enum class OwnSamples : std::uint8_t {
 /// so do ROS 2's types, which the vendors' folders convert.
 constexpr bool is_handed_over(const TopicSpec& topic)
 {
-    return !topic.qos.exclusive && topic.type < TypeId::ros2_imu;
+    return !topic.qos.exclusive && static_cast<std::size_t>(topic.type) < type_count;
 }
 
 /// Whether readers of this topic skip what their own bus writes.
