@@ -240,6 +240,7 @@ Consensus consensus_of(const std::vector<geometry::AxisVector>& rates, const geo
             result.outside_mask |= axis_bit(axis.axis);
         }
     }
+    if (result.outside.empty()) return result;  // at the border of the class: seen from the sound instruments, every axis is inside
     std::ranges::sort(result.outside, {}, &OutsideClass::axis);
     const std::size_t centre = sound.front();
     const Eigen::Matrix3d first_from_centre = rotation_of(pairs.fit(0, centre), pairs.nominal(0)).transpose();

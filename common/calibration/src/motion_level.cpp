@@ -71,11 +71,13 @@ std::optional<MotionLevel> motion_level(Samples samples, const Calibration& cali
         (*detector)->exclude(aside);
         const double largest = largest_statistic(samples, moving, calibration, **detector);
         const bool small_enough = largest <= largest_wanted * (1 + close_enough);
-        found.at_limit = !small_enough;
         if (small_enough && (found.level == 1 || largest >= largest_wanted * (1 - close_enough))) break;
         // The statistic falls no faster than the level rises.
         const double next = std::clamp(found.level * largest / largest_wanted, 1.0, highest);
-        if (next == found.level) break;
+        if (next == found.level) {
+            found.at_limit = !small_enough;
+            break;
+        }
         found.level = next;
     }
     return found;

@@ -16,11 +16,11 @@ struct Replayed {
 
 struct Silence {
     std::array<Replayed, 2> replayed;  ///< by `field` and by `accumulating`, the final level
-    bool at_limit = false;             ///< a sound instrument is isolated even at the largest level
+    bool at_limit = false;             ///< accumulating isolates a sound instrument even at the largest level
 };
 
 /// Replays the recording. As long as `accumulating` isolates an instrument without an axis that was set aside, raises the level of the motion
-/// noise and with it the terms of the gated sums. [docs/methods/calibration.md]
+/// noise and with it the terms of the gated sums. Where an axis was set aside, the level stays. [docs/methods/calibration.md]
 /// @returns nothing where the detectors do not accept the array.
 std::optional<Silence> make_silent(Samples samples, Calibration& calibration);
 
