@@ -101,6 +101,7 @@ class SimulatedLog(ProcessTest):
 
     def test_ends_with_1_where_the_files_expectations_are_not_met(self):
         healthy = self.simulate()
+        self.assertEqual(self.replayed(healthy).returncode, 0, "the file's expectations belong to the faults that it injects")
         result = self.replayed(healthy, "--set", "expect={isolated: [2]}")
         self.assertEqual(result.returncode, 1)
         self.assertIn("not as expected: lane a isolated no axis", result.stderr)
@@ -135,6 +136,7 @@ class SimulatedLog(ProcessTest):
     def test_lists_the_spells_in_which_nobody_was_blamed_for_good(self):
         log = self.simulate("--fault", "axis=2,kind=bias,value=0.02,start=4")
         report = json.loads(self.replay(log))
+        self.assertTrue(report["undecided"])
         for spell in report["undecided"]:
             self.assertGreaterEqual(spell["from_s"], 4)
         self.assertEqual({spell["lane"] for spell in report["undecided"]}, {lane for lane, states in report["undecided_s"].items() if states})

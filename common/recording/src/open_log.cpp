@@ -53,6 +53,7 @@ Opened open_with(const std::filesystem::path& file, const tl::expected<Columns, 
 
 Opened open_text(const std::filesystem::path& file, Input input, const LogOptions& options, std::vector<std::string>& remarks)
 {
+    if (options.any()) return open_aligned(file, options, remarks);
     LineSource lines(std::move(input));
     std::string_view line;
     for (std::uint64_t i = 0; i < header_lines && lines.next(line) == LineSource::Outcome::line; ++i) {
@@ -80,6 +81,8 @@ Opened open_log(const std::filesystem::path& file, const LogOptions& options, st
     if (!input) return Error(input.error());
     const Bytes bytes = input->peek(sniffed_bytes);
     const Kind kind = kind_of(bytes.first(std::min(sniffed_bytes, bytes.size())));
+    if (options.any() && kind != Kind::text)
+        return Error(fmt::format("{}: states its units itself; --unit, --time-unit and --lsb-per-deg-s are for tables", file.string()));
     if (kind == Kind::mimu4444) return std::make_unique<MimuReader>(std::move(*input), file.filename().string());
     if (kind == Kind::mcap) {
         if (auto frames = mcap::FrameReader::open(*input, file.filename().string())) return std::move(*frames);

@@ -260,6 +260,17 @@ TEST(CsvLog, refuses_a_unit_that_is_none_of_a_gyros)
     EXPECT_THAT(refusal_of("time_s,gx [deg/s],gy [rev/min],gz [deg/s]" + rows(20, "")), HasSubstr("'rev/min'"));
 }
 
+TEST(CsvLog, reads_the_units_below_the_names_also_beside_columns_with_units_of_other_things)
+{
+    const Samples log = samples_of(std::string("time,gx,gy,gz,temperature,mx\nms,deg/s,deg/s,deg/s,°C,uT\n0,1,2,3,20,40\n10,1,2,3,20,40\n"));
+    ASSERT_EQ(log.samples.size(), 2U);
+    EXPECT_EQ(log.samples[1].time_ns - log.samples[0].time_ns, 10'000'000);
+    EXPECT_NEAR(log.samples[0].rate_rad_s[2] / degree, 3, 1e-9);
+    const Samples gyro_alone = samples_of(std::string("time_ms,gx,gy,gz\n,deg/s,deg/s,deg/s\n0,1,2,3\n10,1,2,3\n"));
+    ASSERT_EQ(gyro_alone.samples.size(), 2U);
+    EXPECT_NEAR(gyro_alone.samples[0].rate_rad_s[2] / degree, 3, 1e-9);
+}
+
 TEST(CsvLog, reads_points_between_thousands_where_commas_are_decimal)
 {
     const Samples log = samples_of(std::string("t (ms);gx (deg/s);gy (deg/s);gz (deg/s)\n990;0,5;1.000,5;2\n1.000;0,5;1,5;-1.234\n1.010;0,5;1,5;2,5\n"));
@@ -267,6 +278,15 @@ TEST(CsvLog, reads_points_between_thousands_where_commas_are_decimal)
     EXPECT_EQ(log.samples[1].time_ns, 1'000'000'000);
     EXPECT_NEAR(log.samples[0].rate_rad_s[1] / degree, 1000.5, 1e-9);
     EXPECT_NEAR(log.samples[1].rate_rad_s[2] / degree, -1234, 1e-9);
+    const Samples decimal = samples_of(std::string("t (s);gx (deg/s);gy (deg/s);gz (deg/s)\n1.000;0,5;123.456;0.010\n1.010;0,5;-123.456;0.123\n"));
+    ASSERT_EQ(decimal.samples.size(), 2U);
+    EXPECT_NEAR(decimal.samples[0].rate_rad_s[2] / degree, 0.010, 1e-9) << "points are decimal in the whole table where one cell shows it";
+    EXPECT_NEAR(decimal.samples[0].rate_rad_s[1] / degree, 123.456, 1e-9);
+    EXPECT_NEAR(decimal.samples[1].rate_rad_s[1] / degree, -123.456, 1e-9);
+    const Samples negative = samples_of(std::string("t (ms);gx (deg/s);gy (deg/s);gz (deg/s)\n990;0,5;-123.456,5;2\n1.000;0,5;123.456;2\n"));
+    ASSERT_EQ(negative.samples.size(), 2U);
+    EXPECT_NEAR(negative.samples[0].rate_rad_s[1] / degree, -123456.5, 1e-9);
+    EXPECT_NEAR(negative.samples[1].rate_rad_s[1] / degree, 123456, 1e-9);
     const Samples points = samples_of(std::string("t (s);gx_dps;gy_dps;gz_dps\n1.000;1;2;3\n1.010;1;2;3\n"));
     ASSERT_EQ(points.samples.size(), 2U);
     EXPECT_EQ(points.samples[1].time_ns, 1'010'000'000) << "without a decimal comma a point is a decimal one";

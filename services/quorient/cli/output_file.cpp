@@ -70,7 +70,8 @@ const std::string& OutputFile::failure()
 std::uint64_t OutputFile::keep_whole_lines()
 {
     stream_.close();
-    if (!fs::is_regular_file(name_)) return 0;
+    std::error_code unknown;
+    if (!fs::is_regular_file(name_, unknown)) return 0;
     std::ifstream written(name_, std::ios::binary);
     std::uint64_t lines = 0, size = 0, whole = 0;
     std::array<char, 65536> block;
@@ -82,7 +83,7 @@ std::uint64_t OutputFile::keep_whole_lines()
             whole = size;
         }
     }
-    if (whole < size) fs::resize_file(name_, whole);
+    if (whole < size) fs::resize_file(name_, whole, unknown);
     return lines;
 }
 
@@ -98,7 +99,8 @@ void OutputFile::finish()
     if (failure().empty() && stream_.is_open()) {
         errno = 0;
         stream_.close();
-        if (!stream_ || (fs::is_regular_file(name_) && !is_on_disk(name_))) failure_ = error_text();
+        std::error_code unknown;
+        if (!stream_ || (fs::is_regular_file(name_, unknown) && !is_on_disk(name_))) failure_ = error_text();
     }
     if (!failure_.empty()) fail(fmt::format("{}: {}", name_, failure_));
 }

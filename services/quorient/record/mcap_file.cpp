@@ -85,6 +85,8 @@ bool McapFile::finish()
         output_.finish();
     } catch (const cli::Exit&) {
         return false;
+    } catch (const std::exception&) {  // on the writing thread nobody else catches what even the message could not be written for
+        return false;
     }
     return true;
 }

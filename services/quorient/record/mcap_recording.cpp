@@ -86,6 +86,8 @@ void McapRecording::open_next(std::uint64_t log_time_ns)
             file_->add(channel_of(bus::TypeId::cluster_description), log_time_ns, description_);
     } catch (const cli::Exit&) {
         failed_ = true;
+    } catch (const std::exception&) {
+        failed_ = true;
     }
 }
 

@@ -30,22 +30,23 @@ std::string cell_of(double value)
 
 }  // namespace
 
-void write_verdicts(Offline& offline, const system::System& system, std::ostream& out)
+void write_verdicts(Offline& offline, const system::System& system, cli::OutputFile& out)
 {
     std::map<std::uint32_t, std::string> lanes;
     for (const auto& lane : system.lanes) lanes[lane.detector.detector] = lane.name;
-    out << "time_s,lane,sequence,state,isolated,suspect,left_out,statistic,threshold,detectable_remaining\n";
-    offline.watch(bus::topics::verdict, [&out, lanes](const FaultVerdict& verdict) {
+    offline.watch(bus::topics::verdict, [&out, lanes, begun = false](const FaultVerdict& verdict) mutable {
+        if (!begun) out.stream() << "time_s,lane,sequence,state,isolated,suspect,left_out,statistic,threshold,detectable_remaining\n";
+        begun = true;
         const auto lane = lanes.find(verdict.detector);
         const AxisMask left_out = verdict.isolated_mask | provisional_mask(verdict);
-        out << fmt::format("{:.9f},{},{},{},{},{},{},{},{},{}\n", static_cast<double>(verdict.sample_time_ns) * 1e-9,
+        out.stream() << fmt::format("{:.9f},{},{},{},{},{},{},{},{},{}\n", static_cast<double>(verdict.sample_time_ns) * 1e-9,
                            lane == lanes.end() ? std::to_string(verdict.detector) : lane->second, verdict.sequence, to_string(state_of(verdict)),
                            numbers_of(verdict.isolated_mask), numbers_of(verdict.suspect_mask), numbers_of(left_out), cell_of(verdict.statistic),
                            cell_of(verdict.threshold), verdict.detectable_remaining);
     });
 }
 
-void write_events(Offline& offline, std::ostream& out)
+void write_events(Offline& offline, cli::OutputFile& out)
 {
     const auto newest_s = std::make_shared<double>(0);
     offline.watch(bus::topics::frame, [newest_s](const SensorFrame& frame) { *newest_s = static_cast<double>(frame.sample_time_ns) * 1e-9; });
@@ -57,7 +58,7 @@ void write_events(Offline& offline, std::ostream& out)
                                           {"axes", cli::axes_json(event.axes)},
                                           {"sequence", event.sequence},
                                           {"text", std::string(text_of(event.text))}};
-        out << cli::dump(line) << '\n';
+        out.stream() << cli::dump(line) + '\n';
     });
 }
 

@@ -1,11 +1,22 @@
 #include "frame_store.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+#include <cstdlib>
 #include <cstring>
 
 namespace quorient::cli {
 namespace {
 
 constexpr std::size_t most_in_memory = std::size_t{32} << 20U;
+
+/// A file without a name, in $TMPDIR or /var/tmp: /tmp may be memory. It goes with the process. @returns null where there is no room.
+std::FILE* unnamed_file()
+{
+    const char* chosen = std::getenv("TMPDIR");
+    const int file = ::open(chosen && *chosen ? chosen : "/var/tmp", O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    return file < 0 ? std::tmpfile() : ::fdopen(file, "w+");
+}
 
 }  // namespace
 
@@ -24,10 +35,15 @@ bool FrameStore::add(const recording::AlignedFrame& frame)
         memory_.insert(memory_.end(), record_.begin(), record_.end());
         return true;
     }
-    if (!file_) file_.reset(std::tmpfile());
+    if (!file_) file_.reset(unnamed_file());
     if (!file_ || std::fwrite(record_.data(), record_.size(), 1, file_.get()) != 1) return false;
     ++in_file_;
     return true;
+}
+
+bool FrameStore::flush()
+{
+    return !file_ || std::fflush(file_.get()) == 0;
 }
 
 bool FrameStore::each(const std::function<void(const recording::AlignedFrame&)>& visit)
@@ -38,7 +54,7 @@ bool FrameStore::each(const std::function<void(const recording::AlignedFrame&)>&
         visit(frame);
     }
     if (in_file_ == 0) return true;
-    if (std::fflush(file_.get()) != 0 || std::fseek(file_.get(), 0, SEEK_SET) != 0) return false;
+    if (!flush() || std::fseek(file_.get(), 0, SEEK_SET) != 0) return false;
     for (std::uint64_t i = 0; i < in_file_; ++i) {
         if (std::fread(record_.data(), record_.size(), 1, file_.get()) != 1) return false;
         unpack(record_.data(), frame);

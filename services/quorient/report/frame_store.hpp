@@ -19,6 +19,9 @@ public:
     /// @returns false where the disk takes no more: the store is of no use from then on.
     bool add(const recording::AlignedFrame& frame);
 
+    /// After the last frame. @returns false where the disk has not taken them all.
+    bool flush();
+
     /// All frames, in order. @returns false where the file cannot be read back.
     bool each(const std::function<void(const recording::AlignedFrame&)>& visit);
 

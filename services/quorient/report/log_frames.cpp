@@ -30,15 +30,16 @@ void SurveyedFrames::each(const std::function<void(const recording::AlignedFrame
         opened_.emplace(std::move(*opened));
     }
     recording::AlignedFrame frame;
-    bool storing = true;
+    bool storing = storable_;
     for (auto outcome = opened_->next(frame); outcome != recording::ReadOutcome::end; outcome = opened_->next(frame)) {
         if (outcome != recording::ReadOutcome::frame) continue;  // the survey has counted it
         storing = storing && store_.add(frame);
         visit(frame);
     }
     opened_.reset();
-    stored_ = storing;
-    if (!storing) store_ = FrameStore(survey_.compared.size());  // the disk is full: the logs are read again
+    stored_ = storing && store_.flush();
+    storable_ = stored_;
+    if (!stored_) store_ = FrameStore(survey_.compared.size());  // there is no room: the logs are read again, now and later
 }
 
 }  // namespace quorient::cli

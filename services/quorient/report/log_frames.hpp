@@ -32,7 +32,8 @@ private:
     std::optional<recording::AlignedLogs> opened_;  ///< for the first reading
     double interval_s_ = 0;
     FrameStore store_;
-    bool stored_ = false;  ///< all frames are in the store
+    bool stored_ = false;    ///< all frames are in the store
+    bool storable_ = true;   ///< there was room for them so far
 };
 
 }  // namespace quorient::cli

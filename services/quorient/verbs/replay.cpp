@@ -12,6 +12,7 @@
 #include "verbs.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -87,8 +88,34 @@ std::string quoted(const std::vector<std::string>& logs)
     return fmt::format("[{}]", list);
 }
 
+/// A file that injects faults expects them. A replay leaves those faults out, and so the expectations, too, unless the user states a fault
+/// or an expectation.
+bool leaves_expectations_out(const SystemOptions& options)
+{
+    if (!options.faults.empty()) return false;
+    if (std::ranges::any_of(options.set, [](const std::string& assignment) { return assignment.starts_with("expect"); })) return false;
+    const auto as_it_stands = system::load(options.file, options.overrides(false));
+    return as_it_stands && !as_it_stands->sensor.source.scenario.faults.empty();
+}
+
+/// No output may be a log that is read, or another output.
+void refuse_shared_names(const ReplayOptions& options)
+{
+    std::vector<std::string> names = options.logs;
+    for (const auto& out : {options.events.value_or(""), options.verdicts.value_or(""), options.plot}) {
+        if (out.empty()) continue;
+        for (const auto& name : names) {
+            std::error_code unknown;
+            if (out == name || std::filesystem::equivalent(out, name, unknown)) fail(fmt::format("{}: is named twice, as an output and otherwise", out));
+        }
+        names.push_back(out);
+    }
+}
+
 int replay(ReplayOptions options)
 {
+    refuse_shared_names(options);
+    if (leaves_expectations_out(options.system)) options.system.set.push_back("expect=null");
     if (options.from_s && options.to_s && !(*options.from_s < *options.to_s))
         fail(fmt::format("--from {} is not before --to {}", *options.from_s, *options.to_s));
     options.system.set.push_back("source.kind=log");
@@ -109,11 +136,10 @@ int replay(ReplayOptions options)
     if (options.events) events.emplace(*options.events, options.force);
     if (options.verdicts) verdicts.emplace(*options.verdicts, options.force);
     replay::Offline offline{system, run, report, options.choice.options(), timeline ? &*timeline : nullptr};
-    if (events) replay::write_events(offline, events->stream());
-    if (verdicts) replay::write_verdicts(offline, system, verdicts->stream());
+    if (events) replay::write_events(offline, *events);
+    if (verdicts) replay::write_verdicts(offline, system, *verdicts);
     if (const auto done = offline.run(); !done) {
-        fmt::print(stderr, "{}\n", done.error());
-        return 2;
+        fail(done.error());
     }
     if (run.truth_frames() == 0) fail(fmt::format("no frame to replay: {}", offline.remarks()));
     for (auto* const file : {&events, &verdicts})

@@ -1,5 +1,6 @@
 #include "csv_log.hpp"
 
+#include "quorient/messages/sample_time.hpp"
 #include "readers.hpp"
 
 #include <fmt/format.h>
@@ -80,9 +81,9 @@ ReadOutcome CsvLog::refuse(std::string_view why)
 
 std::optional<std::int64_t> CsvLog::time_of(const GyroColumns& gyro) const
 {
-    auto time_ns = cell_time_ns(cell(gyro.time), std::max<std::int64_t>(1, gyro.time_unit_ns), dialect_.decimal_comma);
+    auto time_ns = cell_time_ns(cell(gyro.time), std::max<std::int64_t>(1, gyro.time_unit_ns), dialect_);
     if (!time_ns || !gyro.time_fraction) return time_ns;
-    const auto fraction_ns = cell_time_ns(cell(*gyro.time_fraction), 1, dialect_.decimal_comma);
+    const auto fraction_ns = cell_time_ns(cell(*gyro.time_fraction), 1, dialect_);
     if (!fraction_ns) return std::nullopt;
     return *time_ns + std::clamp<std::int64_t>(*fraction_ns, 0, 1'000'000'000);
 }
@@ -111,7 +112,13 @@ std::optional<ReadOutcome> CsvLog::read(std::size_t number, InstrumentSample& sa
     constexpr std::int64_t wrap_ns = 4'294'967'296'000;  // a 32-bit count of microseconds
     constexpr std::int64_t day_ns = 86'400'000'000'000;
     const std::int64_t turn_ns = gyro.time_wraps ? wrap_ns : gyro.of_day ? day_ns : 0;
-    if (turn_ns > 0 && state->stamp_ns && *time_ns < *state->stamp_ns - turn_ns / 2) state->wraps_ns += turn_ns;
+    const bool turned = turn_ns > 0 && state->stamp_ns && *time_ns < *state->stamp_ns - turn_ns / 2;
+    const std::int64_t wraps_ns = state->wraps_ns + (turned ? turn_ns : 0);
+    if (!is_sample_time(*time_ns) || !is_sample_time(*time_ns + wraps_ns)) {
+        ++statistics_.malformed;
+        return refuse("a time that is centuries away");
+    }
+    state->wraps_ns = wraps_ns;
     const std::int64_t step_ns = state->stamp_ns ? *time_ns - *state->stamp_ns : 0;
     state->stamp_ns = *time_ns;
     sample.time_ns = *time_ns + state->wraps_ns;
@@ -131,7 +138,7 @@ std::optional<ReadOutcome> CsvLog::read(std::size_t number, InstrumentSample& sa
 std::optional<ReadOutcome> CsvLog::read_values(const GyroColumns& gyro, InstrumentSample& sample, std::array<double, 3>& raw)
 {
     const auto read = [&](std::size_t place, double factor, double& value) {
-        const auto number = cell_number(cell(place), dialect_.decimal_comma);
+        const auto number = cell_number(cell(place), dialect_);
         if (number) value = *number * factor;
         return number.has_value();
     };

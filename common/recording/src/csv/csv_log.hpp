@@ -32,6 +32,7 @@ private:
     void read_units_row();
     std::optional<std::string> understand();
     std::optional<std::string> look_at_numbers(std::size_t rows);
+    void look_at_points(std::size_t rows);
     std::optional<std::string> judge_times(std::size_t rows);
     void judge_accelerations();
     std::optional<std::string> judge_rates();

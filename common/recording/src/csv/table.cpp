@@ -111,25 +111,13 @@ std::optional<std::int64_t> decimal_ns(std::string_view text, std::int64_t unit_
     return negative ? -ns : ns;
 }
 
-/// "1.234.567" or "1.234,5": points stand between thousands.
-bool has_thousands(std::string_view cell)
-{
-    const std::string_view whole = cell.substr(0, cell.find(','));
-    const std::size_t first = whole.find('.');
-    if (first == std::string_view::npos || first == 0 || first > 3) return false;
-    for (std::size_t i = first; i < whole.size(); ++i)
-        if ((i - first) % 4 == 0 ? whole[i] != '.' : !is_digit(whole[i])) return false;
-    return (whole.size() - first) % 4 == 0;
-}
-
 /// A copy with a point in place of the comma, and without those between thousands. @returns nothing if the cell is longer than any number.
-std::optional<std::string_view> with_point(std::string_view cell, std::array<char, 64>& copy)
+std::optional<std::string_view> with_point(std::string_view cell, const Dialect& dialect, std::array<char, 64>& copy)
 {
     if (cell.size() > copy.size()) return std::nullopt;
-    const bool thousands = has_thousands(cell);
     std::size_t size = 0;
     for (const char c : cell)
-        if (c != '.' || !thousands) copy[size++] = c == ',' ? '.' : c;
+        if (c != '.' || !dialect.point_thousands) copy[size++] = c == ',' ? '.' : c;
     return std::string_view(copy.data(), size);
 }
 
@@ -167,10 +155,26 @@ void split_cells(std::string_view line, char delimiter, std::vector<std::string_
     }
 }
 
-std::optional<double> cell_number(std::string_view cell, bool decimal_comma)
+Points points_of(std::string_view cell)
+{
+    if (cell.starts_with('-') || cell.starts_with('+')) cell.remove_prefix(1);
+    if (cell.empty() || cell.find_first_not_of("0123456789.,") != std::string_view::npos) return Points::none;
+    const std::size_t comma = cell.find(',');
+    const std::string_view whole = cell.substr(0, comma);
+    const std::size_t first = whole.find('.');
+    if (first == std::string_view::npos) return Points::none;
+    const bool grouped = first > 0 && first <= 3 && whole.front() != '0' && (whole.size() - first) % 4 == 0;
+    if (!grouped) return Points::decimal;
+    for (std::size_t i = first; i < whole.size(); ++i)
+        if (((i - first) % 4 == 0) != (whole[i] == '.')) return Points::decimal;
+    return comma != std::string_view::npos || whole.size() - first > 4 ? Points::thousands : Points::either;
+}
+
+std::optional<double> cell_number(std::string_view cell, const Dialect& dialect)
 {
     std::array<char, 64> copy;
-    const auto text = decimal_comma && cell.find_first_of(",.") != std::string_view::npos ? with_point(cell, copy) : std::optional(cell);
+    const bool rewritten = dialect.decimal_comma && cell.find_first_of(",.") != std::string_view::npos;
+    const auto text = rewritten ? with_point(cell, dialect, copy) : std::optional(cell);
     if (!text) return std::nullopt;
     if (const auto value = number(*text)) return value;
     for (const std::string_view missing : {"", "-", "--", "null", "NULL", "None", "NA", "N/A", "#N/A", "NaN", "n/a", "1.#QNAN", "-1.#IND", "1.#IND", "1.#INF", "-1.#INF"})
@@ -188,11 +192,11 @@ bool is_time_of_day(std::string_view cell)
     return time_of_day_ns(cell).has_value();
 }
 
-std::optional<std::int64_t> cell_time_ns(std::string_view cell, std::int64_t unit_ns, bool decimal_comma)
+std::optional<std::int64_t> cell_time_ns(std::string_view cell, std::int64_t unit_ns, const Dialect& dialect)
 {
     std::array<char, 64> copy;
-    if (decimal_comma && cell.find_first_of(",.") != std::string_view::npos && cell.find(':') == std::string_view::npos) {
-        const auto text = with_point(cell, copy);
+    if (dialect.decimal_comma && cell.find_first_of(",.") != std::string_view::npos && cell.find(':') == std::string_view::npos) {
+        const auto text = with_point(cell, dialect, copy);
         if (!text) return std::nullopt;
         cell = *text;
     }

@@ -94,14 +94,16 @@ void CsvLog::read_units_row()
         std::string_view unit = cells_[i];
         if (unit.empty() || unit == "-") continue;
         if (unit.front() == '[' || unit.front() == '(') unit = unit.substr(1, unit.size() - 2);
-        names[i] += fmt::format(" [{}]", unit);
-        const ColumnName named = read_column_name(names[i]);
-        if (named.unit.empty() && named.unknown_unit.empty()) return;
+        if (cell_number(unit, {.delimiter = dialect_.delimiter, .decimal_comma = true}) || is_iso_time(unit)) return;  // a row of data
+        const std::string with_unit = fmt::format("{} [{}]", names[i], unit);
+        const ColumnName named = read_column_name(with_unit);
+        if (named.unit.empty() && named.unknown_unit.empty()) continue;  // of another column than a gyro's or the time
+        names[i] = with_unit;
         ++units;
     }
     const std::vector<std::string_view> header(names.begin(), names.end());
     const auto layout = read_layout(header);
-    if (units < 4 || !layout || !*layout) return;
+    if (units < 3 || !layout || !*layout) return;
     layout_ = **layout;
     header_line_ = lines_.line_number();
 }
@@ -151,7 +153,27 @@ std::optional<std::string> CsvLog::look_at_numbers(std::size_t rows)
     if (2 * too_wide > seen)
         return fmt::format("{} columns are named, and most rows have more cells: with decimal commas, cells must be parted by ; or tabs",
                            header_cells_);
+    if (dialect_.decimal_comma) look_at_points(rows);
     return std::nullopt;
+}
+
+/// Whether points stand between thousands: some cell shows it, and none contradicts.
+void CsvLog::look_at_points(std::size_t rows)
+{
+    to_first_row();
+    bool shown = false;
+    bool contradicted = false;
+    const auto look = [&](std::string_view cell) {
+        const Points points = points_of(cell);
+        shown = shown || points == Points::thousands;
+        contradicted = contradicted || points == Points::decimal;
+    };
+    for (std::size_t seen = 0; seen < rows && next_row(); ++seen)
+        for (const GyroColumns& gyro : layout_.gyros) {
+            look(cell(gyro.time));
+            for (const std::size_t place : gyro.value) look(cell(place));
+        }
+    dialect_.point_thousands = shown && !contradicted;
 }
 
 /// The unit of the time and of the increments' intervals, from the usual step of one instrument.
@@ -165,16 +187,16 @@ std::optional<std::string> CsvLog::judge_times(std::size_t rows)
         bool dates = false;
         for (std::size_t i = 0; i < rows && next_row(); ++i) {
             if (gyro.time_unit_ns == 0 && is_iso_time(cell(gyro.time))) dates = true;
-            if (dates && is_time_of_day(cell(gyro.time))) gyro.of_day = true;
+            if (is_time_of_day(cell(gyro.time))) gyro.of_day = true;
             const auto time_ns = dates || gyro.time_unit_ns > 0 ? time_of(gyro) : std::nullopt;
-            const auto plain = time_ns ? std::optional(static_cast<double>(*time_ns)) : cell_number(cell(gyro.time), dialect_.decimal_comma);
+            const auto plain = time_ns ? std::optional(static_cast<double>(*time_ns)) : cell_number(cell(gyro.time), dialect_);
             if (!plain || !std::isfinite(*plain)) continue;
             const auto key = layout_.identity ? cell(*layout_.identity) : std::string_view{};
             const auto found = before.find(key);
             if (found != before.end() && *plain > found->second) steps.push_back(*plain - found->second);
             if (found != before.end()) found->second = *plain;
             else if (before.size() < max_instruments) before.emplace(key, *plain);
-            if (gyro.interval) intervals.push_back(cell_number(cell(*gyro.interval), dialect_.decimal_comma).value_or(not_logged));
+            if (gyro.interval) intervals.push_back(cell_number(cell(*gyro.interval), dialect_).value_or(not_logged));
         }
         std::erase_if(intervals, [](double interval) { return !(interval > 0); });
         if (steps.empty()) return fmt::format("no two of the {} rows that follow have times one after the other", rows);
@@ -206,7 +228,7 @@ void CsvLog::judge_accelerations()
         while (sizes.size() < looked_at && next_row()) {
             std::array<double, 3> force{};
             for (std::size_t k = 0; k < 3; ++k)
-                force[k] = cell_number(cell((*gyro.acceleration)[k]), dialect_.decimal_comma).value_or(not_logged);
+                force[k] = cell_number(cell((*gyro.acceleration)[k]), dialect_).value_or(not_logged);
             const double size = std::hypot(force[0], force[1], force[2]);
             if (std::isfinite(size)) sizes.push_back(size);
         }

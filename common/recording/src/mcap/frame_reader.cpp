@@ -17,7 +17,6 @@ constexpr std::size_t most_waiting = 64;                       // frames that wa
 constexpr std::size_t most_descriptions = 64;                  // in the file's beginning
 constexpr double longest_interval_s = 3600;
 constexpr std::int64_t longest_record_ns = 1'000'000'000'000'000'000;
-constexpr double longest_gap_s = 3600;  // frames that are lost; beyond it the recording was stopped and continued
 
 bool is_complete(const ClusterDescription& description)
 {
@@ -65,7 +64,7 @@ std::optional<tl::expected<std::unique_ptr<FrameReader>, std::string>> FrameRead
 {
     std::unique_ptr<FrameReader> reader(new FrameReader(std::move(input), std::move(name)));
     const Beginning beginning = reader->look();
-    if (!beginning.has_channel && reader->schemas_.empty() && reader->records_.met_unknown_compression()) return tl::unexpected(reader->problem_);
+    if (!beginning.has_channel && !reader->met_schema_ && reader->records_.met_unknown_compression()) return tl::unexpected(reader->problem_);
     if (!beginning.has_channel) {
         input = reader->records_.release();
         return std::nullopt;
@@ -215,10 +214,10 @@ std::optional<ReadOutcome> FrameReader::accept(const SensorFrame& frame)
     if (const auto refused = judge(frame)) return refused;
     const std::uint64_t lost = started_ ? frame.sequence - latest_.sequence - 1 : 0;
     const bool continued = static_cast<double>(lost) * frame.interval_s > longest_gap_s;
-    started_ = true;
-    latest_ = frame;
     if (continued)
         return refuse_as(statistics_.irregular, fmt::format("{} frames are missing, more than an hour; the rotation between is not known", lost));
+    started_ = true;
+    latest_ = frame;
     waiting_.push_back({frame, lost, records_.position()});
     return std::nullopt;
 }
@@ -240,15 +239,25 @@ std::optional<ReadOutcome> FrameReader::judge(const SensorFrame& frame)
 void FrameReader::add_names()
 {
     if (records_.opcode() == Opcode::schema) {
-        if (auto schema = parse_schema(records_.content())) schemas_.insert_or_assign(schema->id, std::move(schema->name));
+        const auto schema = parse_schema(records_.content());
+        if (!schema) return;
+        met_schema_ = true;
+        if (const auto topic = topic_named(schema->name)) schemas_.insert_or_assign(schema->id, *topic);
+        else schemas_.erase(schema->id);
     } else if (records_.opcode() == Opcode::channel) {
         const auto channel = parse_channel(records_.content());
         const auto schema = channel ? schemas_.find(channel->schema_id) : schemas_.end();
         if (schema == schemas_.end() || channel->message_encoding != "cdr") return;
-        if (schema->second == "quorient_msgs::SensorFrame") topics_.try_emplace(channel->id, Topic::frame);
-        if (schema->second == "quorient_msgs::ClusterDescription") topics_.try_emplace(channel->id, Topic::cluster);
-        if (schema->second == "quorient_msgs::TruthState") topics_.try_emplace(channel->id, Topic::truth);
+        topics_.try_emplace(channel->id, schema->second);
     }
+}
+
+std::optional<FrameReader::Topic> FrameReader::topic_named(std::string_view schema)
+{
+    if (schema == "quorient_msgs::SensorFrame") return Topic::frame;
+    if (schema == "quorient_msgs::ClusterDescription") return Topic::cluster;
+    if (schema == "quorient_msgs::TruthState") return Topic::truth;
+    return std::nullopt;
 }
 
 std::optional<FrameReader::Topic> FrameReader::topic_of(std::uint16_t channel) const

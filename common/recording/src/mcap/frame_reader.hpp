@@ -8,8 +8,12 @@
 
 #include <deque>
 #include <map>
+#include <string_view>
 
 namespace quorient::recording::mcap {
+
+/// Of frames that are lost; beyond it the recording was stopped and continued, and the rotation between is not known.
+inline constexpr double longest_gap_s = 3600;
 
 /// The frames of one unit's gyros in an MCAP file that `quorient record` wrote, or that another tool made of such a file: bit for bit as they
 /// came from the wire, with the truth where the file has it. The unit is that of the first frame. A publisher that started again has another
@@ -47,6 +51,7 @@ private:
     bool look_at_record(Beginning& beginning);
     void begin_with(const SensorFrame& first, const std::vector<ClusterDescription>& descriptions);
 
+    static std::optional<Topic> topic_named(std::string_view schema);
     std::optional<Topic> topic_of(std::uint16_t channel) const;
     void add_names();
     std::optional<ReadOutcome> record();
@@ -67,7 +72,8 @@ private:
 
     RecordStream records_;
     std::string name_;
-    std::map<std::uint16_t, std::string> schemas_;  // names
+    std::map<std::uint16_t, Topic> schemas_;        // those that are looked for
+    bool met_schema_ = false;                       // of any name
     std::map<std::uint16_t, Topic> topics_;         // by channel
     SensorFrame latest_;                            // the first frame until there is another; its epoch and unit are those of all
     Identity first_;

@@ -6,6 +6,11 @@
 #include <algorithm>
 
 namespace quorient::recording::mcap {
+namespace {
+
+bool is_imu(std::string_view schema) { return schema == "sensor_msgs/msg/Imu" || schema == "sensor_msgs/Imu"; }
+
+}  // namespace
 
 McapLog::McapLog(Input input, std::string name) : records_(std::move(input), statistics_), name_(std::move(name))
 {
@@ -27,7 +32,9 @@ std::optional<ReadOutcome> McapLog::record(InstrumentSample& sample)
 {
     const Bytes content = records_.content();
     if (records_.opcode() == Opcode::schema) {
-        if (auto schema = parse_schema(content)) schemas_.insert_or_assign(schema->id, std::move(schema->name));
+        const auto schema = parse_schema(content);
+        if (schema && is_imu(schema->name)) schemas_.insert(schema->id);
+        else if (schema) schemas_.erase(schema->id);
     } else if (records_.opcode() == Opcode::channel) {
         add_channel(content);
     } else if (records_.opcode() == Opcode::message) {
@@ -40,9 +47,7 @@ void McapLog::add_channel(Bytes content)
 {
     const auto channel = parse_channel(content);
     if (!channel) return;
-    const auto schema = schemas_.find(channel->schema_id);
-    const bool imu = schema != schemas_.end() && (schema->second == "sensor_msgs/msg/Imu" || schema->second == "sensor_msgs/Imu");
-    if (!imu || (channel->message_encoding != "cdr" && channel->message_encoding != "ros1")) return;
+    if (!schemas_.contains(channel->schema_id) || (channel->message_encoding != "cdr" && channel->message_encoding != "ros1")) return;
     topics_.try_emplace(channel->id, Topic{channel->topic, channel->message_encoding == "ros1", std::nullopt});
 }
 

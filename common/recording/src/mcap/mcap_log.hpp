@@ -4,6 +4,7 @@
 #include "record_stream.hpp"
 
 #include <map>
+#include <set>
 
 namespace quorient::recording::mcap {
 
@@ -31,7 +32,7 @@ private:
 
     RecordStream records_;
     std::string name_;
-    std::map<std::uint16_t, std::string> schemas_;  // names
+    std::set<std::uint16_t> schemas_;               // those of IMUs
     std::map<std::uint16_t, Topic> topics_;         // those of IMUs, by channel
 };
 

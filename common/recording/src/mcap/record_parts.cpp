@@ -24,25 +24,33 @@ public:
             if (outcome == ReadOutcome::rejected) problem_ = part.problem();
             if (outcome == ReadOutcome::rejected) return outcome;
             if (outcome == ReadOutcome::end) ++at_;
-            else if (continue_with(part, frame)) return outcome;
+            else if (const auto given = continue_with(part, frame)) return *given;
         }
         return ReadOutcome::end;
     }
 
 private:
-    /// Puts a part's frame behind those of the parts before. @returns false where they have it already
-    bool continue_with(const FrameReader& part, RecordedFrame& frame)
+    /// Puts a part's frame behind those of the parts before, by the rules of a single file. @returns nothing where they have it already
+    std::optional<ReadOutcome> continue_with(const FrameReader& part, RecordedFrame& frame)
     {
         const std::uint64_t sequence = part.given_sequence();
         frame.time_ns += part.origin_ns() - origin_ns_;
-        if (given_ && sequence <= *given_) return false;
+        if (given_ && sequence <= *given_) return std::nullopt;
+        const bool forward = !given_ || frame.time_ns > statistics_.duration_ns;
+        const bool near = !given_ || static_cast<double>(sequence - *given_ - 1) * frame.interval_s <= longest_gap_s;
+        if (!forward || !near) {
+            ++refused_between_;
+            add_up();
+            problem_ = "a part that continues another one more than an hour later, or earlier in time: the rotation between is not known";
+            return ReadOutcome::rejected;
+        }
         if (given_) frame.lost_before = sequence - *given_ - 1;
         between_ += given_ && at_ != given_in_ ? frame.lost_before : 0;
         given_ = sequence;
         given_in_ = at_;
         add_up();
         statistics_.duration_ns = frame.time_ns;
-        return true;
+        return ReadOutcome::frame;
     }
 
     void add_up()
@@ -64,6 +72,7 @@ private:
             statistics_.truncated_bytes += other.truncated_bytes;
         }
         statistics_.lost += between_;
+        statistics_.irregular += refused_between_;
         statistics_.duration_ns = duration_ns;
     }
 
@@ -73,6 +82,7 @@ private:
     std::optional<std::uint64_t> given_;  // sequence of the frame given out last …
     std::size_t given_in_ = 0;            // … and its part
     std::uint64_t between_ = 0;           // frames missing between two parts
+    std::uint64_t refused_between_ = 0;   // frames of a part that does not continue the one before
 };
 
 }  // namespace
@@ -89,7 +99,8 @@ std::optional<std::unique_ptr<Reader>> open_parts(std::span<const std::filesyste
     }
     const auto first = [](const auto& part) { return part->first(); };
     const auto belongs = [&](const auto& part) {
-        return first(part).epoch == first(parts.front()).epoch && part->description().unit == parts.front()->description().unit;
+        return first(part).epoch == first(parts.front()).epoch && part->description().unit == parts.front()->description().unit &&
+               part->description().axis_count == parts.front()->description().axis_count;
     };
     if (parts.empty() || !std::all_of(parts.begin(), parts.end(), belongs)) return std::nullopt;
     std::sort(parts.begin(), parts.end(), [&](const auto& a, const auto& b) { return first(a) < first(b); });

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::uint64_t largest_chunk = std::uint64_t{96} << 20U;  // uncompressed; writers make them of 1 to 4 MiB
 constexpr std::uint64_t largest_record = std::uint64_t{1} << 20U;  // that is looked at; others (images) are passed over
+constexpr std::uint8_t first_private_opcode = 0x80;  // and above: records of applications, to be passed over
 constexpr std::size_t read_at_once = std::size_t{1} << 20U;
 
 /// The next bytes of an input, as a source of their own.
@@ -120,6 +121,11 @@ std::optional<RecordStream::Step> RecordStream::next_in_file()
         ended_ = ended_in_order_ = true;
         return Step::end;
     }
+    if (bytes[0] >= first_private_opcode) {
+        input_.take(record_header_size);
+        const std::uint64_t passed = input_.skip(length);
+        return passed < length ? std::optional(end_of(passed)) : std::nullopt;
+    }
     if (!is_known(opcode)) {
         ++counts_.records;
         ++counts_.malformed;
@@ -154,7 +160,7 @@ std::optional<RecordStream::Step> RecordStream::open_chunk(std::uint64_t length)
         return refuse(sound ? fmt::format("a chunk of {} MB is too large", fields->uncompressed_size >> 20U)
                             : std::string("a chunk whose fields contradict its length"));
     }
-    const std::uint64_t end = input_.offset() + record_header_size + chunk_fields_size(*fields) + fields->records_size;
+    const std::uint64_t end = input_.offset() + record_header_size + length;
     input_.take(record_header_size + chunk_fields_size(*fields));
     fill_chunk(*fields);
     input_.skip(end - input_.offset());

@@ -62,6 +62,8 @@ struct LogOptions {
     std::optional<RateUnit> rate_unit;
     std::optional<double> lsb_per_deg_s;  ///< values are raw counts
     std::optional<TimeUnit> time_unit;
+
+    bool any() const { return rate_unit || lsb_per_deg_s || time_unit; }
 };
 
 /// A log as a stream of its instruments' samples: reads forward, holds a bounded buffer whatever the log's length. Instruments come to
