@@ -10,7 +10,7 @@ TEXT, BINARY, CLOSE, PING = 1, 2, 8, 9
 
 
 class WebSocket:
-    def __init__(self, port, protocol, origin=None, receive_buffer=None):
+    def __init__(self, port, protocol, origin=None, receive_buffer=None, cookie=None):
         self.socket = socket.socket()
         if receive_buffer:
             self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
@@ -19,6 +19,7 @@ class WebSocket:
         lines = ["GET / HTTP/1.1", f"Host: 127.0.0.1:{port}", "Upgrade: websocket", "Connection: Upgrade", "Sec-WebSocket-Version: 13",
                  f"Sec-WebSocket-Key: {base64.b64encode(os.urandom(16)).decode()}", f"Sec-WebSocket-Protocol: {protocol}"]
         lines += [f"Origin: {origin}"] if origin else []
+        lines += [f"Cookie: {cookie}"] if cookie else []
         request = ("\r\n".join(lines) + "\r\n\r\n").encode()
         self.file = self.socket.makefile("rb")
         self.status = 0  # closed without an answer: the server has as many viewers as it takes

@@ -120,7 +120,7 @@ class Viewer(MonitoredSystem):
         self.start_system(duration_s=20)
         self.assertEqual(self.connect("chat").status, 400)
         self.assertEqual(self.connect(origin="https://example.org").status, 403)
-        accepted = self.connect(PROTOCOLS[1], origin="http://localhost:3000")
+        accepted = self.connect(PROTOCOLS[1], origin="http://localhost:3000", cookie="c" * 8000)
         self.assertEqual((accepted.status, accepted.headers["sec-websocket-protocol"]), (101, PROTOCOLS[1]))
 
     def test_a_viewer_that_never_reads_loses_messages_and_costs_the_pipeline_no_frame(self):
@@ -128,7 +128,9 @@ class Viewer(MonitoredSystem):
         monitor = self.monitor()
         deaf = [self.subscribed(receive_buffer=1024) for _ in range(8)]
         reading = self.subscribed([2])
-        crowd = [WebSocket(self.port, PROTOCOLS[0]) for _ in range(30)] if deaf else []
+        crowd = [WebSocket(self.port, PROTOCOLS[0]) for _ in range(30)]
+        self.assertIn(0, {client.status for client in crowd}, "no more than 32 viewers are served")
+        self.assertLessEqual(self.figure("quorient_monitor_viewers"), 32)
         self.eventually(lambda: self.figure("quorient_monitor_viewer_messages_dropped_total") > 0, "messages are dropped", timeout=12)
         for _ in range(5):
             self.assertEqual(self.data_after(reading)[0], 102)

@@ -6,8 +6,11 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/beast/core.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/parser.hpp>
 #include <boost/beast/websocket.hpp>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -82,7 +85,14 @@ public:
         stream_.set_option(websocket::stream_base::decorator(
             [protocol](websocket::response_type& response) { response.set(beast::http::field::sec_websocket_protocol, protocol); }));
         stream_.read_message_max(shared_.limits.request_bytes);
-        stream_.async_accept(asio::buffer(request), [self = shared_from_this()](Error error) {
+        // Parsed here, because Beast takes no more than 1536 octets of a request that it is to parse itself.
+        beast::http::request_parser<beast::http::empty_body> parser;
+        parser.eager(true);
+        parser.header_limit(static_cast<std::uint32_t>(request.size()) + 1);
+        Error malformed;
+        parser.put(asio::buffer(request), malformed);
+        if (malformed || !parser.is_done()) return;
+        stream_.async_accept(parser.get(), [self = shared_from_this()](Error error) {
             if (error) return;
             self->open_ = true;
             self->send({self->shared_.greeting});
@@ -226,6 +236,7 @@ struct ViewerServer::Implementation {
         Error error;
         asio::ip::tcp::socket connection(context);
         connection.assign(asio::ip::tcp::v4(), socket, error);
+        if (error) ::close(socket);
         if (error || viewers.size() >= shared.limits.viewers) return;  // the socket closes with `connection`
         connection.set_option(asio::socket_base::send_buffer_size(send_buffer_bytes), error);
         const auto viewer = std::make_shared<Viewer>(std::move(connection), shared);
@@ -275,6 +286,7 @@ std::optional<std::string> ViewerServer::chosen_protocol(std::string_view offere
 
 bool ViewerServer::may_connect(std::string_view origin, std::string_view own_address)
 {
+    if (origin == "null") return false;  // what a browser sends for a page that hides where it comes from
     const bool is_web_page = begins_with(origin, "http://") || begins_with(origin, "https://");
     if (!is_web_page || origin == "https://app.foxglove.dev") return true;
     auto host = origin.substr(origin.find("//") + 2);

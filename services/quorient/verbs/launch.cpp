@@ -294,7 +294,7 @@ int launch_system(const LaunchOptions& options)
 void add_launch(Program& program)
 {
     auto verb =
-        program.verb("launch", "Start the processes of a system file, restart those that die, show a live table, end with a summary");
+        program.verb("launch", "Start the processes of a system file, restart those that die, show what differs from normal, end with a summary");
     auto options = std::make_shared<LaunchOptions>();
     options->system.add_to(verb);
     verb.option("--duration", options->duration_s, "Stop after so many seconds; else when the source ends")
