@@ -76,6 +76,11 @@ class ServiceManager(ProcessTest):
         for _ in range(3):
             self.assertEqual(self.hear(self.WATCHDOG_S), "WATCHDOG=1")
 
+    def test_a_composition_with_the_sensor_is_not_ready_while_another_of_its_services_is_not(self):
+        self.start("quorient-run", CONFIGURATIONS / "demo.yaml", "sensor", "attitude-a", "--domain", self.domain)
+        self.eventually(lambda: self.heartbeat("attitude-a").exists() and self.heartbeat("sensor").exists(), "the composition is up")
+        self.assertIsNone(self.hear(2 * self.WATCHDOG_S), "no detector runs, so the integrator is not ready")
+
     def test_a_watchdog_for_another_process_is_not_fed(self):
         self.environment["WATCHDOG_PID"] = str(os.getpid())
         self.start_sensor()

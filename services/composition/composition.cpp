@@ -19,8 +19,9 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-/// The way of a sample: a service before those that receive from it, so that one round of the event loop takes a frame through all.
-constexpr std::array roles{ServiceRole::sensor, ServiceRole::detector, ServiceRole::integrator, ServiceRole::voter};
+/// In this order they start: a service before those that receive from it, so that one round of the event loop takes a frame through all.
+/// The sensor comes last. It is ready when it is made, so the others must exist by then: the process is ready once all are.
+constexpr std::array roles{ServiceRole::detector, ServiceRole::integrator, ServiceRole::voter, ServiceRole::sensor};
 
 tl::expected<host::Process, std::string> find_process(const system::System& system, ServiceRole role, const std::string& name)
 {

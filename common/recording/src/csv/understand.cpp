@@ -97,7 +97,7 @@ void CsvLog::read_units_row()
         if (cell_number(unit, {.delimiter = dialect_.delimiter, .decimal_comma = true}) || is_iso_time(unit)) return;  // a row of data
         const std::string with_unit = fmt::format("{} [{}]", names[i], unit);
         const ColumnName named = read_column_name(with_unit);
-        if (named.unit.empty() && named.unknown_unit.empty()) continue;  // of another column than a gyro's or the time
+        if (named.unit.empty() && named.unknown_unit.empty()) continue;  // the column is neither a gyro's nor the time
         names[i] = with_unit;
         ++units;
     }

@@ -12,7 +12,7 @@
 
 namespace quorient::recording::mcap {
 
-/// Of frames that are lost; beyond it the recording was stopped and continued, and the rotation between is not known.
+/// The longest loss of frames that is bridged; beyond it the recording was stopped and continued, and the rotation between is not known.
 inline constexpr double longest_gap_s = 3600;
 
 /// The frames of one unit's gyros in an MCAP file that `quorient record` wrote, or that another tool made of such a file: bit for bit as they
@@ -73,7 +73,7 @@ private:
     RecordStream records_;
     std::string name_;
     std::map<std::uint16_t, Topic> schemas_;        // those that are looked for
-    bool met_schema_ = false;                       // of any name
+    bool met_schema_ = false;                       // whatever its name
     std::map<std::uint16_t, Topic> topics_;         // by channel
     SensorFrame latest_;                            // the first frame until there is another; its epoch and unit are those of all
     Identity first_;
