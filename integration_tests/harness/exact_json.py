@@ -16,3 +16,8 @@ def number(value):
 
 def loads(text):
     return json.loads(text, object_hook=lambda fields: {key: number(value) for key, value in fields.items()})
+
+
+def objects(log):
+    """The objects in a file that takes both outputs of a running `echo --json`. What it tells its user meanwhile and a line half written are no objects."""
+    return [loads(line) for line in log.read_text().split("\n")[:-1] if line.startswith("{")]
