@@ -3,16 +3,24 @@
 
 A service that is kept from running is silent, and the system rightly reports it. A test of an undisturbed system is void then.
 """
+import math
 import os
 import subprocess
 import sys
 import threading
 import time
+import unittest
 
 NAP_S = 0.005
 # A lane that does not run for five intervals of 5 ms is silent. On a quiet machine with two processors the longest was 3 to 5 ms, beside tests
 # of a whole pipeline 6 to 16 ms.
 STALL_S = 0.02
+# Two intervals cost frames, and where a fault begins in them it cannot be isolated any more. A failure beside such a pause is tried again.
+PAUSE_S = 0.01
+
+
+class NoQuietMachine(unittest.SkipTest):
+    """Each attempt failed, and in each the machine stood still: nothing is known of what was tested."""
 
 
 class Witness:
@@ -32,19 +40,23 @@ class Witness:
             self._process.communicate()
             self.longest_s = 10.0
 
-    @property
-    def stood_still(self):
-        return self.longest_s >= STALL_S
-
 
 def until_held(attempt, allowed=3):
-    """Runs `attempt`, and again where it did not hold while this machine stood still. @param attempt returns whether all held. @returns the same."""
+    """Runs `attempt`, and again where it did not hold while this machine paused.
+
+    @param attempt returns whether all held. @returns the same.
+    Raises NoQuietMachine where the machine stood still in every attempt."""
+    shortest_s = math.inf
     for number in range(1, allowed + 1):
         with Witness() as witness:
             held = attempt()
-        if held or not witness.stood_still or number == allowed:
+        shortest_s = min(shortest_s, witness.longest_s)
+        if held or witness.longest_s < PAUSE_S:
             return held
         print(f"attempt {number} is void: this machine stood still for {1e3 * witness.longest_s:.0f} ms", file=sys.stderr, flush=True)
+    if shortest_s < STALL_S:
+        return False
+    raise NoQuietMachine(f"this machine is too busy for this test: in each of {allowed} attempts it stood still for {1e3 * shortest_s:.0f} ms or more")
 
 
 def watch(processor, end, longest_s):
