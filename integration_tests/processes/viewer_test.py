@@ -1,34 +1,17 @@
 """Foxglove's live protocol on the monitor's port: by the protocol's own client package, and by clients that behave badly."""
-import contextlib
 import json
 import os
 import pathlib
 import re
-import shutil
 import subprocess
 import unittest
 
 from integration_tests.harness.monitored import MonitoredSystem
+from integration_tests.harness.node_packages import node_modules
 from integration_tests.harness.processes import ROOT
 from integration_tests.harness.websocket import CLOSE, WebSocket
 
 PROTOCOLS = ("foxglove.websocket.v1", "foxglove.sdk.v1")
-PACKAGES = ("@foxglove/ws-protocol@0.8.0", "ws@8.18.0")
-NODE_PACKAGES = pathlib.Path(os.environ.get("QUORIENT_NODE_PACKAGES", ROOT / "build/node"))
-
-
-def missing_packages():
-    """Why the client package cannot be used; nothing where it can. Installs it once, beside the builds."""
-    if not shutil.which("node"):
-        return "node is not installed"
-    if (NODE_PACKAGES / "node_modules/@foxglove/ws-protocol").is_dir():
-        return None
-    if not shutil.which("npm"):
-        return "npm is not installed"
-    with contextlib.suppress(subprocess.TimeoutExpired):
-        subprocess.run(["npm", "install", "--no-audit", "--no-fund", "--fetch-retries=0", "--prefix", NODE_PACKAGES, *PACKAGES],
-                       capture_output=True, timeout=60)
-    return None if (NODE_PACKAGES / "node_modules/@foxglove/ws-protocol").is_dir() else f"npm could not install {' '.join(PACKAGES)}"
 
 
 class Viewer(MonitoredSystem):
@@ -55,8 +38,7 @@ class Viewer(MonitoredSystem):
         return float(re.search(rf'^{name}{{unit="1"}} (\S+)$', self.request("GET", "/metrics")[1], re.MULTILINE)[1])
 
     def test_the_protocols_own_client_sees_the_attitude_the_isolated_axis_and_the_events(self):
-        if reason := missing_packages():
-            self.skipTest(reason)
+        modules = node_modules()
         self.start_system(duration_s=30)
         for protocol in PROTOCOLS:
             if protocol == PROTOCOLS[1]:
@@ -64,7 +46,7 @@ class Viewer(MonitoredSystem):
                 self.eventually(lambda: self.get("/state")["axes"][1]["state"] == "isolated", "G2 is isolated")
             client = subprocess.run(
                 ["node", ROOT / "integration_tests/processes/viewer_client.cjs", f"ws://127.0.0.1:{self.port}/", protocol, "10"],
-                capture_output=True, text=True, timeout=30, env=os.environ | {"NODE_PATH": str(NODE_PACKAGES / "node_modules")})
+                capture_output=True, text=True, timeout=30, env=os.environ | {"NODE_PATH": str(modules)})
             self.assertEqual(client.returncode, 0, client.stderr)
             self.check(json.loads(client.stdout), protocol)
 
