@@ -84,8 +84,8 @@ public:
     {
         look();
         if (instruments_.size() >= 2) compare();
-        const auto times = findings_of_times(instruments_);
-        report_.findings.insert(report_.findings.end(), times.begin(), times.end());
+        for (const auto& found : {findings_of_ranges(survey_, instruments_), findings_of_times(instruments_)})
+            report_.findings.insert(report_.findings.end(), found.begin(), found.end());
         number_as_reported();
         remark_on_coverage();
         remark_on_times();
@@ -159,7 +159,7 @@ private:
         std::uint32_t sound = (1U << instruments_.size()) - 1;
         for (const Isolation& isolation : watch.isolations()) sound &= ~(1U << isolation.instrument);
         for (std::size_t m = 0; m < instruments_.size(); ++m) add_compared_facts(overview_, mountings, aftermath, m, sound, facts_of(m));
-        report_.findings = findings_of({overview_, mountings, watch, aftermath, names_});
+        report_.findings = findings_of({overview_, mountings, watch, aftermath, instruments_});
         remark_on_flexing(aftermath.flexing());
     }
 

@@ -21,6 +21,9 @@ constexpr double belongs_s = 2.0;
 constexpr double lasting_s = 1.0;
 constexpr double least_certainty = 1.3;
 
+/// A value beyond this share of the range is the range's end; both signs may end a little differently.
+constexpr double at_range = 0.97;
+
 constexpr std::size_t most_transients = 50;
 
 Kind kind_of(Diagnosis diagnosis)
@@ -170,7 +173,7 @@ private:
         const auto bias_in_common = [&](std::size_t m) { return Eigen::Vector3d(evidence_.mountings.of[m].turned * *evidence_.overview.rest_bias(m)); };
         Eigen::Vector3d others = Eigen::Vector3d::Zero();
         double used = 0;
-        for (std::size_t m = 0; m < evidence_.names.size(); ++m) {
+        for (std::size_t m = 0; m < evidence_.instruments.size(); ++m) {
             if (m == *finding.instrument || !evidence_.overview.rest_bias(m) || is_isolated(m)) continue;
             others += bias_in_common(m);
             used += 1;
@@ -194,7 +197,7 @@ private:
             });
         };
         for (const StuckSpell& spell : evidence_.aftermath.own_evidence().stuck()) {
-            if (known(spell.instrument, spell.from_s)) continue;
+            if (known(spell.instrument, spell.from_s) || is_at_range(spell)) continue;
             Finding finding;
             finding.kind = spell.value == 0 ? Kind::zero : Kind::stuck;
             finding.from_s = spell.from_s;
@@ -202,20 +205,40 @@ private:
             add_certain(finding, spell.instrument, spell.axis);
         }
         for (const SpikeTrain& train : evidence_.aftermath.own_evidence().spikes()) {
-            if (known(train.instrument, train.from_s)) continue;
+            if (known(train.instrument, train.from_s) || completed(train)) continue;
             Finding finding;
             finding.kind = Kind::spikes;
             finding.size = train.mean_rad_s / degree;
             finding.from_s = train.from_s;
             finding.to_s = train.to_s;
-            finding.remark = fmt::format("{} single samples", train.count);
-            if (evidence_.names.size() > 2) {
+            finding.remark = counted(train.count, "single sample");
+            if (evidence_.instruments.size() > 2) {
                 add_certain(finding, train.instrument, train.axis);
                 continue;
             }
-            finding.candidates = all_of(evidence_.names.size());
+            finding.candidates = all_of(evidence_.instruments.size());
             found_.push_back(std::move(finding));
         }
+    }
+
+    bool is_at_range(const StuckSpell& spell) const
+    {
+        const auto& reached = evidence_.instruments[spell.instrument].figures.range_reached[spell.axis];
+        return reached && std::abs(spell.value) > at_range * reached->range_rad_s;
+    }
+
+    /// The detector names spikes when they have come again and again; the train knows the first one and their size.
+    bool completed(const SpikeTrain& train)
+    {
+        const auto same = std::find_if(found_.begin(), found_.end(), [&](const Finding& finding) {
+            return finding.kind == Kind::spikes && finding.instrument == train.instrument && finding.axis == train.axis;
+        });
+        if (same == found_.end()) return false;
+        same->from_s = std::min(same->from_s, train.from_s);
+        same->size = train.mean_rad_s / degree;
+        same->uncertainty = unknown;
+        same->remark = counted(train.count, "single sample");
+        return true;
     }
 
     void add_certain(Finding finding, std::size_t instrument, std::size_t axis)
@@ -237,7 +260,7 @@ private:
     {
         if (spell.what == Spell::What::contradicted && belongs_to_a_fault(spell)) return;
         Finding finding;
-        for (std::size_t m = 0; m < evidence_.names.size(); ++m)
+        for (std::size_t m = 0; m < evidence_.instruments.size(); ++m)
             if ((spell.axes & (AxisMask{7} << (3 * m))) != 0) finding.candidates.push_back(m);
         if (spell.what == Spell::What::disagreement && explained(finding.candidates, spell)) return;
         if (finding.candidates.size() == 1) {
@@ -299,6 +322,29 @@ std::vector<Finding> findings_of_times(const std::vector<recording::SurveyedInst
         found.push_back(std::move(finding));
     }
     if (found.size() == instruments.size()) found.clear();
+    return found;
+}
+
+std::vector<Finding> findings_of_ranges(const recording::Survey& survey, const std::vector<recording::SurveyedInstrument>& instruments)
+{
+    std::vector<Finding> found;
+    for (std::size_t m = 0; m < instruments.size(); ++m) {
+        const std::int64_t first_ns = survey.logs[instruments[m].log].first_ns;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto& reached = instruments[m].figures.range_reached[k];
+            if (!reached) continue;
+            Finding finding;
+            finding.instrument = m;
+            finding.axis = k;
+            finding.kind = Kind::saturated;
+            finding.size = finding.uncertainty = unknown;
+            finding.from_s = static_cast<double>(reached->first_ns - first_ns) * 1e-9;
+            finding.to_s = static_cast<double>(reached->last_ns - first_ns) * 1e-9;
+            finding.remark = fmt::format("{} at {:.0f} deg/s", counted(reached->samples, "sample"), reached->range_rad_s / degree);
+            finding.candidates = {m};
+            found.push_back(std::move(finding));
+        }
+    }
     return found;
 }
 

@@ -31,6 +31,7 @@ const KindWords& words(Kind kind)
 }
 
 constexpr double least_duration_s = 2.0;
+constexpr double shown_deg_s = 0.05;  // less is 0.0 in the words
 constexpr double at_once_s = 1.5;  // a fault from the first second on
 
 /// "0.47 +- 0.01"
@@ -200,7 +201,7 @@ std::string list_of(const std::vector<std::string>& names)
 std::string words_of(const Finding& finding)
 {
     std::string text = size_words(finding);
-    if (finding.bias_deg_s) text += " and reads " + too_much(*finding.bias_deg_s, 0);
+    if (std::abs(finding.bias_deg_s.value_or(0)) >= shown_deg_s) text += " and reads " + too_much(*finding.bias_deg_s, 0);
     if (!finding.remark.empty()) text += " (" + finding.remark + ")";
     return text;
 }

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <deque>
 #include <random>
 
@@ -300,6 +301,21 @@ TEST_P(ADiagnosis, names_spikes_that_come_again_and_again)
         if (sequence % 1500 == 1000) rates[3] += 60;
     };
     EXPECT_FALSE(diagnose(rare, length_s).found_anything()) << "sound instruments have shocks";
+}
+
+TEST_P(ADiagnosis, takes_an_axis_that_ends_at_its_range_for_no_faulty_one)
+{
+    static constexpr double range_deg_s = 25;
+    spoil_axis(scene, 3, [](double rate) { return std::clamp(rate, -range_deg_s, range_deg_s); }, 0);
+    SceneFrames frames(scene, length_s);
+    recording::Survey survey = survey_of(scene, length_s);
+    EXPECT_THAT(with(diagnose(survey, frames, {}), Certainty::isolated), SizeIs(testing::Ge(1U))) << "nothing in the values shows the range";
+
+    survey.instruments[1].figures.range_reached[0] = recording::Clipping{range_deg_s * degree, 700, 5'000'000'000, 25'000'000'000};
+    const Report report = diagnose(survey, frames, {});
+
+    EXPECT_THAT(with(report, Certainty::isolated), IsEmpty()) << report.sentence;
+    EXPECT_THAT(report.sentence, HasSubstr("IMU1 x is at its range (700 samples at 25 deg/s) from 5.00 s to 25.00 s"));
 }
 
 TEST_P(ADiagnosis, tells_a_structure_that_flexes_from_a_board)

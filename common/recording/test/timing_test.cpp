@@ -3,6 +3,7 @@
 #include "time/stamp_guard.hpp"
 
 #include <gmock/gmock.h>
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -99,6 +100,40 @@ TEST(InstrumentMeter, tells_repeated_values_and_values_at_the_end_of_the_range)
     EXPECT_EQ(figures.at_extreme[0], 40U);
     EXPECT_EQ(figures.clipped[0], 40U);
     EXPECT_TRUE(figures.clipping_logged);
+}
+
+/// What x makes of a motion of 300 deg/s, and of noise, where the sensor ends at a range.
+InstrumentFigures figures_at(double range_rad_s, double (*x_at)(int))
+{
+    InstrumentMeter meter;
+    for (int i = 0; i < 6000; ++i) meter.add(sample_at(5 * ms * i, std::clamp(x_at(i), -range_rad_s, range_rad_s)));
+    return meter.figures();
+}
+
+double turning(int i)
+{
+    return 5.2 * std::sin(0.01 * i) + 0.01 * std::sin(1.7 * i);
+}
+
+TEST(InstrumentMeter, knows_the_range_of_an_axis_that_stayed_at_it_again_and_again)
+{
+    const InstrumentFigures clipped = figures_at(4.36, turning);
+    ASSERT_TRUE(clipped.range_reached[0]);
+    EXPECT_EQ(clipped.range_reached[0]->range_rad_s, 4.36);
+    double beyond = 0;
+    for (int i = 0; i < 6000; ++i) beyond += std::abs(turning(i)) >= 4.36;
+    EXPECT_NEAR(static_cast<double>(clipped.range_reached[0]->samples), beyond, 2);
+    EXPECT_NEAR(static_cast<double>(clipped.range_reached[0]->first_ns) * 1e-9, 0.5, 0.01) << "5.2 sin(0.01 i) passes 4.36 after 99 samples";
+    EXPECT_FALSE(clipped.range_reached[2]) << "a quarter of a radian a second";
+}
+
+TEST(InstrumentMeter, takes_motion_stuck_axes_and_spikes_for_no_range)
+{
+    EXPECT_FALSE(figures_at(35, turning).range_reached[0]);
+    EXPECT_FALSE(figures_at(5.2, turning).range_reached[0]) << "the top of the motion";
+    EXPECT_FALSE(figures_at(35, [](int i) { return i < 3000 ? turning(i) : 8.0; }).range_reached[0]) << "stuck";
+    EXPECT_FALSE(figures_at(35, [](int i) { return i % 200 == 0 ? -40.0 : turning(i); }).range_reached[0]) << "spikes";
+    EXPECT_FALSE(figures_at(35, [](int i) { return std::round(4 * std::sin(0.01 * i)) / 4; }).range_reached[0]) << "coarse steps at small rates";
 }
 
 TEST(InstrumentMeter, says_when_the_rate_changes)

@@ -24,6 +24,14 @@ double seconds_of(std::int64_t ns)
     return static_cast<double>(ns) * 1e-9;
 }
 
+/// One axis, from its two sides.
+std::optional<Clipping> both(const std::optional<Clipping>& upper, const std::optional<Clipping>& lower)
+{
+    if (!upper || !lower) return upper ? upper : lower;
+    return Clipping{std::max(upper->range_rad_s, lower->range_rad_s), upper->samples + lower->samples, std::min(upper->first_ns, lower->first_ns),
+                    std::max(upper->last_ns, lower->last_ns)};
+}
+
 }  // namespace
 
 void InstrumentMeter::add(const InstrumentSample& sample)
@@ -127,6 +135,7 @@ void InstrumentMeter::judge_values(const InstrumentSample& sample)
             figures_.at_extreme[k] = 0;
         }
         if (size == figures_.largest_rad_s[k]) ++figures_.at_extreme[k];
+        (rate < 0 ? lower_ends_ : upper_ends_)[k].add(size, sample.time_ns);
         if (before_ && before_->rate_rad_s[k] == rate) {
             if (sample.time_ns != before_->time_ns) ++figures_.repeated[k];
             figures_.longest_repeat_s[k] = std::max(figures_.longest_repeat_s[k], seconds_of(sample.time_ns - kept_since_ns_[k]));
@@ -184,8 +193,10 @@ InstrumentFigures InstrumentMeter::figures() const
     }
     const double logged_s = figures.duration_s() - holes_s_;
     figures.coverage = logged_s > 0 ? std::min(1.0, covered_s_ / logged_s) : 0.0;
-    for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t k = 0; k < 3; ++k) {
         if (figures.at_extreme[k] < extreme_again) figures.at_extreme[k] = 0;
+        figures.range_reached[k] = both(upper_ends_[k].clipping(), lower_ends_[k].clipping());
+    }
     return figures;
 }
 

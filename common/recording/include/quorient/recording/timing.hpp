@@ -1,5 +1,6 @@
 #pragma once
 
+#include "quorient/recording/end_of_range.hpp"
 #include "quorient/recording/instrument_log.hpp"
 
 #include <array>
@@ -28,6 +29,7 @@ struct InstrumentFigures {
     bool clipping_logged = false;
     std::array<std::uint64_t, 3> at_extreme{};     ///< samples at the largest magnitude of the axis, if that came again and again
     std::array<double, 3> largest_rad_s{};
+    std::array<std::optional<Clipping>, 3> range_reached{};  ///< by axis, judged by the values; nothing: they look like motion
     std::uint64_t beyond_gyros = 0;                ///< samples with a rate that no gyro reads: 4500 deg/s and more
     std::uint64_t not_finite = 0;                  ///< samples without a value on one axis at least
     double temperature_min_c = not_logged;
@@ -77,6 +79,8 @@ private:
     std::vector<double> first_covered_s_;       // what the samples behind these steps covered
     std::optional<InstrumentSample> before_;
     std::optional<Jump> jump_;
+    std::array<EndOfRange, 3> upper_ends_;
+    std::array<EndOfRange, 3> lower_ends_;
     std::array<std::int64_t, 3> kept_since_ns_{};  // since when each axis has had its value
     double covered_s_ = 0;
     double holes_s_ = 0;
