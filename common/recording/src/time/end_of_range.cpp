@@ -6,7 +6,7 @@ namespace {
 /// No gyro for vehicles has a smaller range.
 constexpr double smallest_range_rad_s = 100.0 * 3.14159265358979323846 / 180.0;
 
-/// Of two's complement codes the ends of both signs differ by one of 32768.
+/// The ends of both signs differ by one of 32768 where codes are two's complements.
 constexpr double same_value = 1.0 - 1e-4;
 constexpr double near_value = 0.97;
 
