@@ -1,5 +1,6 @@
 #include "quorient/bus/cyclonedds_bus.hpp"
 
+#include "configuration.hpp"
 #include "contract_check.hpp"
 #include "quorient/bus/contract.hpp"
 #include "quorient/bus/history.hpp"
@@ -319,50 +320,6 @@ private:
     Refusals refusals_;  ///< by this bus's readers
 };
 
-/// Most participants of one host and domain by RTPS's ports [RTPS 9.6.1.1]. Unicast discovery sends to each port, so it probes fewer.
-constexpr std::uint32_t most_participants = 119;
-
-/// Cyclone DDS 0.10 assumes that every node with the same MAC address shares its memory, and passes topic names to iceoryx without the
-/// domain. A reader then receives the samples of other domains too. It cannot use them, does not return them, and receives nothing more
-/// after 256. So the topic prefix holds the domain here, and the address (16 octets) identifies the daemon: all other nodes are reached
-/// by UDP.
-std::string shared_memory(std::uint32_t domain, bool shared)
-{
-    if (!shared) return "<SharedMemory><Enable>false</Enable></SharedMemory>";
-    std::string address;
-    for (const auto part : roudi_identity()) {
-        for (unsigned octet = 0; octet < 8; ++octet)
-            address += fmt::format("{}{:02x}", address.empty() ? "" : ":", part >> (8 * octet) & 0xffU);
-    }
-    return fmt::format(
-        "<SharedMemory><Enable>true</Enable><Locator>{}</Locator><Prefix>quorient_{}</Prefix><LogLevel>warn</LogLevel></SharedMemory>",
-        address, domain);
-}
-
-/// Cyclone's configuration. Without GenerateKeyhash Fast DDS does not notice that a Cyclone endpoint leaves. The short heartbeat and NACK
-/// delays repair a lost sample before any consumer's patience ends.
-std::string configuration(const Settings& settings, bool shared)
-{
-    std::string interface;
-    if (!settings.interface.empty()) {
-        const bool address = settings.interface.find('.') != std::string::npos;
-        interface = fmt::format(R"(<Interfaces><NetworkInterface {}="{}" multicast="{}"/></Interfaces>)", address ? "address" : "name",
-                                settings.interface, settings.peers.empty());
-    }
-    std::string peers;
-    for (const auto& peer : settings.peers) peers += fmt::format(R"(<Peer address="{}"/>)", peer);
-    const bool unicast = !settings.peers.empty();
-    return fmt::format(
-        "<CycloneDDS><Domain Id=\"any\"><General>{}<AllowMulticast>{}</AllowMulticast></General>"
-        "<Discovery>{}<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>{}</MaxAutoParticipantIndex></Discovery>"
-        "<Internal><GenerateKeyhash>true</GenerateKeyhash><NackDelay>1ms</NackDelay>"
-        "<HeartbeatInterval min=\"1ms\" minsched=\"2ms\" max=\"100ms\">{}us</HeartbeatInterval></Internal>"
-        "{}</Domain></CycloneDDS>",
-        interface, !unicast, unicast ? fmt::format("<Peers>{}</Peers>", peers) : std::string{},
-        unicast ? settings.participants_per_host - 1 : most_participants, static_cast<long>(heartbeat_s(settings) * 1e6),
-        shared_memory(settings.domain, shared));
-}
-
 }  // namespace
 
 tl::expected<std::unique_ptr<Bus>, std::string> open_cyclonedds(const Settings& settings, OwnSamples own)
@@ -376,7 +333,7 @@ tl::expected<std::unique_ptr<Bus>, std::string> open_cyclonedds(const Settings& 
     }
     if (shared) survive_full_pools();
     // A second bus of this process in the same domain shares the first one's domain and its configuration.
-    const auto domain = dds_create_domain(settings.domain, configuration(settings, shared).c_str());
+    const auto domain = dds_create_domain(settings.domain, cyclonedds::configuration(settings, shared).c_str());
     if (domain < 0 && domain != DDS_RETCODE_PRECONDITION_NOT_MET)
         return tl::make_unexpected(fmt::format("Cyclone DDS: domain {}: {}", settings.domain, dds_strretcode(-domain)));
     Entity owned_domain{domain};
