@@ -19,6 +19,12 @@ bool is_exact_in_doubles(const Json& whole)
     return number >= -static_cast<std::int64_t>(largest_exact) && number <= static_cast<std::int64_t>(largest_exact);
 }
 
+/// Names come from files of any encoding: bytes that are no UTF-8 are replaced by U+FFFD, since JSON knows nothing else.
+std::string plain(const Json& value)
+{
+    return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 /// nlohmann's own dump writes the shortest text that reads back to the same number; the contract asks for 17 digits.
 void append(std::string& text, const Json& value)
 {
@@ -37,14 +43,14 @@ void append(std::string& text, const Json& value)
         text += '{';
         for (const auto& [key, member] : value.items()) {
             if (text.back() != '{') text += ',';
-            text += Json(key).dump() + ':';
+            text += plain(key) + ':';
             append(text, member);
         }
         text += '}';
     } else if (value.is_number_integer() && !is_exact_in_doubles(value)) {
-        text += '"' + value.dump() + '"';
+        text += '"' + plain(value) + '"';
     } else {
-        text += value.dump();
+        text += plain(value);
     }
 }
 

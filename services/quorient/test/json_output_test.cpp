@@ -37,6 +37,11 @@ TEST(JsonOutput, keeps_order_and_escapes_text)
               R"({"z":"say \"hi\"","a":true,"n":3,"empty":[],"none":{}})");
 }
 
+TEST(JsonOutput, replaces_what_is_no_utf_8)
+{
+    EXPECT_EQ(dump({{"Kr\xfc", "1 \xb0/s"}, {"\u00fc", "\u00b0"}}), "{\"Kr\uFFFD\":\"1 \uFFFD/s\",\"\u00fc\":\"\u00b0\"}");
+}
+
 TEST(JsonOutput, writes_matrices_by_rows_and_masks_by_axes)
 {
     Eigen::Matrix<double, 2, 3> matrix;
