@@ -15,6 +15,7 @@ using namespace quorient;
 
 constexpr std::size_t frame_count = 256;
 constexpr double interval_s = 0.01;
+constexpr double noise_rad = 1e-5;  // of one frame's increment
 
 geometry::SensorCluster cluster_of(const std::string& layout)
 {
@@ -23,7 +24,7 @@ geometry::SensorCluster cluster_of(const std::string& layout)
     return cluster;
 }
 
-/// Slow motion with unit noise; a fault of 200 sigma on axis 1 where `faulty`.
+/// Slow motion of 1 rad/s with noise, within every gyro's range; a fault of 200 sigma (0.2 rad/s) on axis 1 where `faulty`.
 std::vector<std::vector<double>> frames_of(const geometry::SensorCluster& cluster, bool faulty)
 {
     std::mt19937_64 engine(5);
@@ -31,10 +32,10 @@ std::vector<std::vector<double>> frames_of(const geometry::SensorCluster& cluste
     std::vector<std::vector<double>> frames;
     for (std::size_t k = 0; k < frame_count; ++k) {
         const double phase = 0.01 * static_cast<double>(k);
-        const geometry::AxisVector clean = cluster.axes * (1000 * Eigen::Vector3d(std::cos(phase), std::sin(phase), 0.3));
+        const geometry::AxisVector clean = cluster.axes * (1000 * noise_rad * Eigen::Vector3d(std::cos(phase), std::sin(phase), 0.3));
         std::vector<double> z(clean.data(), clean.data() + clean.size());
-        for (double& value : z) value += normal(engine);
-        if (faulty && k > frame_count / 8) z[1] += 200;
+        for (double& value : z) value += noise_rad * normal(engine);
+        if (faulty && k > frame_count / 8) z[1] += 200 * noise_rad;
         frames.push_back(std::move(z));
     }
     return frames;
@@ -77,8 +78,8 @@ void add_methods(const std::string& axes, const std::string& layout)
     for (const auto& entry : fdi::methods()) {
         fdi::DetectorSettings settings;
         settings.method = entry.word;
-        settings.sigma = 1;
-        settings.bound = 4;
+        settings.sigma = noise_rad;
+        settings.bound = 4 * noise_rad;
         if (settings.method == "auto" || !fdi::make_detector(settings, cluster)) continue;
         for (const bool faulty : {false, true})
             benchmark::RegisterBenchmark((settings.method + "/" + axes + (faulty ? "/fault" : "/healthy")).c_str(), assessment, settings,
