@@ -1,4 +1,4 @@
-"""Size and cost of a recording at 200 Hz, and what kill -9 leaves of one: `python3 -m integration_tests.records.measure`. Prints a table.
+"""Size and cost of a recording at 200 Hz, and what kill -9 leaves of one: `python3 -m integration_tests.records.measure [SECONDS]`. Prints a table.
 
 The loss by a kill is the time from the last sample in the file to the signal, for kills at several phases of a chunk.
 """
@@ -8,6 +8,7 @@ import pathlib
 import re
 import struct
 import subprocess
+import sys
 import tempfile
 import time
 
@@ -16,7 +17,8 @@ from integration_tests.harness.processes import BIN, CONFIGURATIONS
 DEMO = CONFIGURATIONS / "demo.yaml"
 DOMAIN = 61
 CHUNK = 0x06  # opcode of a chunk
-SECONDS = 20
+SECONDS = int(sys.argv[1]) if len(sys.argv) > 1 else 20
+AROUND_S = 60  # the pipeline's start, and the kills
 KILLS_AFTER_S = (2.1, 2.4, 2.7, 3.0, 3.3)
 
 
@@ -54,6 +56,10 @@ def last_time_ns(file):
     return last
 
 
+def replay(file):
+    return json.loads(subprocess.run(command("replay", file, "--system", DEMO, "--set", "expect=null", "--json"), capture_output=True, text=True, check=True).stdout)
+
+
 def kill(folder, number, after_s):
     """@returns the frames that replay reads, and how long before the kill the last sample was received [s]."""
     file = folder / f"killed_{number}.mcap"
@@ -64,8 +70,7 @@ def kill(folder, number, after_s):
     killed_ns = time.time_ns()
     process.kill()
     process.wait()
-    report = json.loads(subprocess.run(command("replay", file, "--system", DEMO, "--set", "expect=null", "--json"), capture_output=True, text=True, check=True).stdout)
-    return report["frames"], (killed_ns - last_time_ns(file)) / 1e9
+    return replay(file)["frames"], (killed_ns - last_time_ns(file)) / 1e9
 
 
 def main():
@@ -73,12 +78,13 @@ def main():
         folder = pathlib.Path(name)
         environment = dict(os.environ, QUORIENT_RUN_DIR=name)
         launched = subprocess.Popen(
-            command("launch", DEMO, "--domain", DOMAIN, "--json", "--set", "source.duration_s=120", "--set", "expect=null"),
+            command("launch", DEMO, "--domain", DOMAIN, "--json", "--set", f"source.duration_s={SECONDS + AROUND_S}", "--set", "expect=null"),
             env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         )
         try:
             time.sleep(2)  # the pipeline starts; what is measured does not depend on it
             size, costs, told = record(folder)
+            replayed = replay(folder / "flight.mcap")
             frames = int(re.match(r"(\d+) frames", told[0]).group(1))
             kills = [kill(folder, number, after_s) for number, after_s in enumerate(KILLS_AFTER_S)]
         finally:
@@ -88,6 +94,7 @@ def main():
     print("| what | |\n|---|---|")
     print(f"| told by `record` | {told[0]} |")
     print(f"| told by `record` of a CSV beside it | {told[1]} |")
+    print(f"| size, and frames that replay reads | {size / 1e6:.1f} MB, {replayed['frames']} |")
     print(f"| size per minute | {size / seconds * 60 / 1e6:.1f} MB |")
     print(f"| write rate | {size / seconds / 1e3:.0f} kB/s |")
     print(f"| processor time of `record` | {100 * costs[0]:.1f} % of one processor; of a CSV {100 * costs[1]:.1f} % |")
