@@ -6,16 +6,6 @@
 #include <algorithm>
 
 namespace quorient::diagnosis {
-namespace {
-
-/// As it is stated, or else as the values show it; 0 where nothing does.
-double range_of(const recording::SurveyedInstrument& surveyed, Eigen::Index axis)
-{
-    const auto& reached = surveyed.figures.range_reached[static_cast<std::size_t>(axis)];
-    return surveyed.instrument.range_rad_s > 0 || !reached ? surveyed.instrument.range_rad_s : reached->range_rad_s;
-}
-
-}  // namespace
 
 Array::Array(const Mountings& mountings, const std::vector<recording::SurveyedInstrument>& instruments, const std::vector<Calibration>& reference,
              double interval_s)
@@ -39,7 +29,7 @@ Array::Array(const Mountings& mountings, const std::vector<recording::SurveyedIn
         }
         const auto first = static_cast<Eigen::Index>(3 * m);
         cluster_.axes.middleRows(first, 3) = one.turned.transpose();
-        for (Eigen::Index k = 0; k < 3; ++k) cluster_.range(first + k) = range_of(instruments[m], k) / one.scale;
+        for (Eigen::Index k = 0; k < 3; ++k) cluster_.range(first + k) = instruments[m].range_rad_s(static_cast<std::size_t>(k)) / one.scale;
         cluster_.instrument.insert(cluster_.instrument.end(), 3, m);
         cluster_.instrument_name.push_back(instruments[m].instrument.name);
         of_.push_back(one);

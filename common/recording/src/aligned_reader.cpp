@@ -17,7 +17,7 @@ public:
         description_.kind = octet(SensorKind::gyro);
         description_.interval_s = logs_.interval_s();
         set_name(description_.name, survey.files.front().stem().string());
-        for (const std::size_t i : survey.compared) append(survey.instruments[i].instrument);
+        for (const std::size_t i : survey.compared) append(survey.instruments[i]);
     }
 
     ReadOutcome next(RecordedFrame& frame) override
@@ -34,12 +34,13 @@ public:
     }
 
 private:
-    void append(const Instrument& instrument)
+    void append(const SurveyedInstrument& surveyed)
     {
-        for (const auto& axis : instrument.axis) {
+        const Instrument& instrument = surveyed.instrument;
+        for (std::size_t k = 0; k < instrument.axis.size(); ++k) {
             const std::size_t place = description_.axis_count++;
-            description_.axis[place] = axis;
-            description_.range[place] = instrument.range_rad_s;
+            description_.axis[place] = instrument.axis[k];
+            description_.range[place] = surveyed.range_rad_s(k);
             description_.instrument[place] = description_.instrument_count;
         }
         set_name(description_.instrument_name[description_.instrument_count++], instrument.name);

@@ -4,6 +4,7 @@
 #include "writers/dataflash_writer.hpp"
 
 #include <gmock/gmock.h>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -156,6 +157,24 @@ TEST_F(Surveyed, gives_frames_of_any_log_where_a_reader_of_frames_is_asked_for)
     EXPECT_EQ(log.frames[20].valid_mask, all_axes(9));
     EXPECT_NEAR(log.frames[20].increment[5], 2 * 1.020 * 0.04, 1e-6) << "z of IMU2 in row 20";
     EXPECT_NEAR(log.frames[20].acceleration_m_s2[5], -9.8, 1e-5);
+}
+
+TEST_F(Surveyed, describes_the_range_that_an_axis_stayed_at)
+{
+    std::ostringstream table;
+    table << "time_s,g0x [rad/s],g0y [rad/s],g0z [rad/s],g1x [rad/s],g1y [rad/s],g1z [rad/s]\n";
+    for (int i = 0; i < 4000; ++i) {
+        const double rate = 5.2 * std::sin(0.01 * i);
+        table << 0.005 * i << ',' << rate << ",0.1," << 0.1 * rate << ',' << std::clamp(rate, -4.36, 4.36) << ",0.1," << 0.1 * rate << '\n';
+    }
+    const auto reader = open_log(write("clipped.csv", table.str()));
+    ASSERT_TRUE(reader) << reader.error();
+
+    const auto& range = (*reader)->description().range;
+    EXPECT_EQ((*reader)->description().axis_count, 6);
+    EXPECT_EQ(range[0], 0) << "the top of the motion is no range";
+    EXPECT_EQ(range[3], 4.36);
+    EXPECT_EQ(range[5], 0);
 }
 
 TEST_F(Surveyed, keeps_a_bounded_part_of_a_long_log)

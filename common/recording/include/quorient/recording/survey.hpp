@@ -46,6 +46,13 @@ struct SurveyedInstrument {
     std::optional<double> arrival_period_s;  ///< by the earliest arrivals
     std::vector<KeptWindow> windows;         ///< by number of the stretch; empty where nothing was kept
     ClockFigures clock;
+
+    /// Largest rate of an axis, as it is stated or else as its values show it; 0 where nothing does.
+    double range_rad_s(std::size_t axis) const
+    {
+        const auto& reached = figures.range_reached[axis];
+        return instrument.range_rad_s > 0 || !reached ? instrument.range_rad_s : reached->range_rad_s;
+    }
 };
 
 struct SurveyedLog {
