@@ -10,6 +10,7 @@ from integration_tests.harness import exact_json
 from integration_tests.harness.foreign import BIN, InteropTest, angle, conjugate, consumer, example, product
 from integration_tests.harness.processes import CONFIGURATIONS
 
+LOGGED = re.compile(r"\d+\.\d+ \[\d+\]\s")  # a line of Cyclone DDS's own log, on the same stream
 LINE = re.compile(r"(\d+) (\d+) (\d+) voter (\d+) level (\d+) mode (\d+) q (\S+) (\S+) (\S+) (\S+) sigma (\S+) rad")
 FULL = 1
 QUANTUM_RAD = 0.4848e-6
@@ -27,7 +28,7 @@ class Voted:
 
 def samples(log):
     """Parses whole lines only: the last one may still be being written."""
-    return [Voted(line) for line in log.read_text().split("\n")[:-1]]
+    return [Voted(line) for line in log.read_text().split("\n")[:-1] if not LOGGED.match(line)]
 
 
 def trace_page(traces):
@@ -182,7 +183,7 @@ class Examples(InteropTest):
     def take_over(self, log, had):
         """@param had  lines that the consumer had printed when the first voter was killed
         @returns the lines around the change to the second voter, and the frames that the consumer was not given."""
-        lines = log.read_text().split("\n")[:-1]
+        lines = [line for line in log.read_text().split("\n")[:-1] if not LOGGED.match(line)]
         stream = [Voted(line) for line in lines]
         last = next(place for place in range(had, len(stream)) if stream[place].voter == 2) - 1
         before, after = stream[last], stream[last + 1]
