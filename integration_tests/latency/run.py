@@ -356,8 +356,9 @@ def growth(runner):
     return results
 
 
-def version(package):
-    done = subprocess.run(["dpkg-query", "-W", "-f", "${Version}", package], capture_output=True, text=True)
+def version(*packages):
+    """Of the package that is installed; releases of Debian name it differently."""
+    done = subprocess.run(["dpkg-query", "-W", "-f", "${Version}", *packages], capture_output=True, text=True)
     return done.stdout or "not from a package"
 
 
@@ -365,7 +366,7 @@ def machine(options):
     model = next((line.split(":")[1].strip() for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")), "?")
     return {
         "processor": model, "cores": os.cpu_count(), "kernel": platform.release(), "load_before": os.getloadavg(), "nice": os.nice(0),
-        "versions": {name: version(package) for name, package in (("Fast DDS", "libfastrtps2.9"), ("Cyclone DDS", "cyclonedds-dev"), ("iceoryx", "iceoryx"))},
+        "versions": {"Fast DDS": version("libfastrtps2.9", "libfastdds3.1"), "Cyclone DDS": version("cyclonedds-dev"), "iceoryx": version("iceoryx")},
         "rounds": options.rounds, "seconds": options.seconds, "command": " ".join(["python3 -m integration_tests.latency.run", *sys.argv[1:]]),
         "date": time.strftime("%Y-%m-%d", time.gmtime()),
     }

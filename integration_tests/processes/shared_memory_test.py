@@ -16,6 +16,7 @@ from integration_tests.harness.processes import CONFIGURATIONS, ProcessTest
 DEMO = CONFIGURATIONS / "demo.yaml"
 UDP, SHARED_MEMORY, ICEORYX = 2, 3, 4  # codes of ServiceStatus.transport (common/messages)
 MEMORY = pathlib.Path("/dev/shm")
+FAST_DDS = ("fastrtps_", "sem.fastrtps_", "fastdds_", "sem.fastdds_", "fast_datasharing_")  # its files, of releases 2 and 3
 ROUDI = shutil.which("iox-roudi")
 ROUDI_SOCKET = "/tmp/roudi"
 MAY_MOUNT = os.geteuid() == 0 and shutil.which("unshare")
@@ -117,7 +118,7 @@ class SharedMemory(ProcessTest):
         return exact_json.loads(result.stdout.splitlines()[0])
 
     def our_files(self):
-        return [file.name for file in MEMORY.iterdir() if file.name.startswith(("fastrtps_", "sem.fastrtps_", "fast_datasharing_", "iceoryx_mgmt"))]
+        return [file.name for file in MEMORY.iterdir() if file.name.startswith((*FAST_DDS, "iceoryx_mgmt"))]
 
     def test_demo_by_shared_memory_is_as_expected_and_status_names_the_transport(self):
         pipeline = self.start_demo("--set", "source.duration_s=12", "--set", "source.faults=['axis=1,kind=scale,value=0.8,start=5,end=10']")
@@ -162,7 +163,7 @@ class SharedMemory(ProcessTest):
                 frame = self.newest_frame()  # its reader has left when the capture begins
                 epoch = struct.pack("<Q", frame["epoch"])
                 packets = payload_packets(self.domain, epoch, 1)
-                segments = [file for file in MEMORY.iterdir() if not file.name.startswith(("fastrtps_", "sem.", "iceoryx_mgmt"))]
+                segments = [file for file in MEMORY.iterdir() if not file.name.startswith((*FAST_DDS, "sem.", "iceoryx_mgmt"))]
                 samples = sum(file.read_bytes().count(epoch) for file in segments)
                 if transport == "iceoryx":
                     self.assertLess(packets, 20)  # events and the reader that leaves; three topics at 200 Hz make 600

@@ -14,6 +14,7 @@
 #include <optional>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace quorient::monitor {
@@ -113,6 +114,9 @@ private:
     std::string request_;
 };
 
+/// What httplib's queue returns for an entry: nothing, or since release 0.14 whether it was taken.
+using Enqueued = decltype(std::declval<httplib::TaskQueue&>().enqueue({}));
+
 /// A thread per connection, and never more connections than threads: what comes on top is turned away by the accepting thread.
 class BoundedThreads final : public httplib::TaskQueue {
 public:
@@ -121,7 +125,7 @@ public:
         for (std::size_t i = 0; i < count; ++i) threads_.emplace_back([this] { work(); });
     }
 
-    void enqueue(std::function<void()> connection) override
+    Enqueued enqueue(std::function<void()> connection) override
     {
         {
             const std::lock_guard lock{mutex_};
@@ -129,13 +133,14 @@ public:
                 ++open_;
                 waiting_.push_back(std::move(connection));
                 arrived_.notify_one();
-                return;
+                return Enqueued(true);
             }
         }
         ++refused_;
         refusing = true;
         connection();
         refusing = false;
+        return Enqueued(true);  // the socket is closed already
     }
 
     void shutdown() override
@@ -202,15 +207,29 @@ void WebServer::go_on_with(std::string protocol)
     next_protocol = std::move(protocol);
 }
 
+template <class Stream>
+bool WebServer::answer(Stream& connection)
+{
+    bool closed = false;
+    if constexpr (requires { this->process_request(connection, true, closed, nullptr); }) {
+        return process_request(connection, true, closed, nullptr);
+    } else {  // later releases of httplib do not ask the stream for its addresses
+        std::string remote, local;
+        int remote_port = 0, local_port = 0;
+        connection.get_remote_ip_and_port(remote, remote_port);
+        connection.get_local_ip_and_port(local, local_port);
+        return process_request(connection, remote, remote_port, local, local_port, true, closed, nullptr);
+    }
+}
+
 bool WebServer::process_and_close_socket(socket_t socket)
 {
     bool handled = false;
     if (!refusing) {
         ::setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &limits_.send_buffer_bytes, sizeof limits_.send_buffer_bytes);
         Connection connection{socket, limits_, ending_};
-        bool closed = false;
         next_protocol.reset();
-        handled = process_request(connection, true, closed, nullptr);
+        handled = answer(connection);
         if (next_protocol) {
             next_protocol_(socket, connection.request(), *std::exchange(next_protocol, std::nullopt));
             return handled;

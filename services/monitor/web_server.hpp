@@ -45,6 +45,10 @@ public:
 private:
     bool process_and_close_socket(socket_t socket) override;
 
+    /// Receives one request and sends the response, by the interface of httplib's release.
+    template <class Stream>
+    bool answer(Stream& connection);
+
     Limits limits_;
     std::atomic<std::uint64_t> refused_{0};
     std::atomic<bool> ending_{false};
