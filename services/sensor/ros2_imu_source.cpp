@@ -1,10 +1,14 @@
+#include "correction.hpp"
 #include "describe.hpp"
 #include "imu_alignment.hpp"
 #include "quorient/messages/name.hpp"
+#include "rest_learner.hpp"
 #include "sources.hpp"
 
 #include <fmt/format.h>
 #include <cassert>
+#include <deque>
+#include <numbers>
 
 namespace quorient::sensor {
 
@@ -13,6 +17,9 @@ namespace {
 /// Discovery takes about a second. A topic that nobody publishes by then is named before five are over.
 constexpr std::int64_t publisher_patience_ns = 3'000'000'000;
 
+/// From so long a rest at the start biases are learned.
+constexpr double wanted_rest_s = 2;
+
 class Ros2ImuSource final : public FrameSource {
 public:
     Ros2ImuSource(const system::SensorSettings& settings, std::uint64_t epoch)
@@ -20,6 +27,7 @@ public:
           faults_(*settings.cluster, settings.source.scenario.seed),
           description_(describe(*settings.cluster)),
           alignment_(settings_, settings.kind, settings.cluster->interval_s),
+          rest_(settings.cluster->instrument, settings.kind == SensorKind::gyro ? wanted_rest_s : 0),
           told_(settings_.imus.size(), ImuAlignment::Fault::none),
           topics_(settings_.imus.size(), Topic::awaited),
           domain_(settings.process.bus.domain)
@@ -66,6 +74,7 @@ public:
         if (!started_ && !alignment_.ready(now)) return Advance::not_yet;
         if (!started_) alignment_.start(now);
         started_ = true;
+        if (rest_.state() == RestLearner::State::learning && !learn(now)) return Advance::not_yet;
         for (; next_ <= sequence; ++next_) {
             alignment_.advance(now);
             fill(next_, frame);
@@ -79,6 +88,11 @@ public:
 
     std::optional<Notice> notice() override
     {
+        if (!learned_.empty()) {
+            const Notice notice = std::move(learned_.front());
+            learned_.pop_front();
+            return notice;
+        }
         for (std::size_t imu = 0; imu < topics_.size(); ++imu)
             if (auto notice = topic_notice(imu)) return notice;
         for (std::size_t imu = 0; imu < told_.size(); ++imu) {
@@ -107,6 +121,47 @@ private:
         AxisMask axes = 0;
         for (std::size_t axis = 0; axis < description_.axis_count; ++axis) axes |= description_.instrument[axis] == imu ? axis_bit(axis) : 0;
         return axes;
+    }
+
+    /// One more raw frame. @returns whether that was the last one that is wanted.
+    bool learn(std::int64_t now)
+    {
+        alignment_.advance(now);
+        SensorFrame raw;
+        measure(raw);
+        rest_.add(raw);
+        if (rest_.state() == RestLearner::State::learning) return false;
+        if (rest_.state() == RestLearner::State::rested) take_biases();
+        else learned_.push_back({Severity::info, 0, "the IMUs move at the start: their biases are not known", EventCode::started});
+        alignment_.start(now);  // the calls were a little late, each of them
+        return true;
+    }
+
+    /// What was learned at rest goes into the next revision of the description.
+    void take_biases()
+    {
+        ++description_.revision;
+        for (std::size_t axis = 0; axis < description_.axis_count; ++axis) {
+            if (!has_axis(rest_.learned(), axis)) continue;
+            description_.bias[axis] = correction_.bias_rad_s[axis] = rest_.bias_rad_s(axis);
+            if (description_.sigma[axis] == 0) description_.sigma[axis] = rest_.sigma_rad(axis);
+        }
+        for (std::size_t imu = 0; imu < settings_.imus.size(); ++imu) learned_.push_back(learned_notice(imu));
+    }
+
+    Notice learned_notice(std::size_t imu) const
+    {
+        const AxisMask axes = axes_of(imu);
+        const AxisMask missing = axes & ~rest_.learned();
+        const auto& name = settings_.imus[imu].name;
+        if (missing == axes) return {Severity::warning_low, axes, fmt::format("{}: its bias at rest is not known", name), EventCode::started};
+        std::string text = fmt::format("{}: bias at rest", name);
+        for (std::size_t axis = 0; axis < description_.axis_count; ++axis) {
+            if (!has_axis(axes, axis)) continue;
+            if (has_axis(missing, axis)) text += " unknown";
+            else text += fmt::format(" {:+.3f}", rest_.bias_rad_s(axis) * 180 / std::numbers::pi);
+        }
+        return {missing == 0 ? Severity::info : Severity::warning_low, axes, text + " deg/s, taken out", EventCode::started};
     }
 
     /// Names a topic from which nothing comes, once, and once more when it comes.
@@ -146,15 +201,25 @@ private:
         const auto length_ns = alignment_.end_ns() - alignment_.begin_ns();
         // After a step of the IMUs' clock the frames' time goes on by intervals, never back.
         time_ns_ = time_ns_ == 0 ? alignment_.end_ns() : time_ns_ + length_ns;
-        frame = {};
+        measure(frame);
         frame.epoch = description_.epoch;
         frame.sequence = sequence;
         frame.sample_time_ns = time_ns_;
-        frame.interval_s = static_cast<double>(length_ns) * 1e-9;
         frame.unit = description_.unit;
         frame.kind = description_.kind;
         frame.axis_count = description_.axis_count;
         frame.description_revision = description_.revision;
+        for (std::size_t axis = 0; axis < description_.axis_count; ++axis)
+            if (has_axis(frame.valid_mask, axis)) frame.increment[axis] = correction_.corrected(axis, frame.increment[axis], frame.interval_s);
+        faults_.apply(frame, static_cast<double>(sequence) * description_.interval_s);
+        accumulator_.add(frame);
+    }
+
+    /// The raw increments of the interval in hand.
+    void measure(SensorFrame& frame) const
+    {
+        frame = {};
+        frame.interval_s = static_cast<double>(alignment_.end_ns() - alignment_.begin_ns()) * 1e-9;
         std::array<std::size_t, max_axes> component{};
         for (std::size_t axis = 0; axis < description_.axis_count; ++axis) {
             const auto imu = description_.instrument[axis];
@@ -164,15 +229,16 @@ private:
             frame.valid_mask |= axis_bit(axis);
             frame.increment[axis] = instrument.increment(row);
         }
-        faults_.apply(frame, static_cast<double>(sequence) * description_.interval_s);
-        accumulator_.add(frame);
     }
 
     system::Ros2SourceSettings settings_;
     simulation::FaultInjector faults_;
     simulation::FrameAccumulator accumulator_;
     ClusterDescription description_;
+    Correction correction_ = Correction::none();
     ImuAlignment alignment_;
+    RestLearner rest_;
+    std::deque<Notice> learned_;  ///< at the start, not told yet
     std::vector<ImuAlignment::Fault> told_;
     std::vector<Topic> topics_;  ///< for each IMU
     std::vector<bool> heard_;    ///< for each IMU: whether a message came

@@ -106,7 +106,9 @@ void SensorPublisher::report_notices()
 bool SensorPublisher::publish(std::uint64_t sequence)
 {
     const auto arrival = node_.clock().steady_ns();
+    const auto described = source_->description().revision;
     const auto advance = source_->advance_to(sequence, frame_, truth_);
+    if (source_->description().revision != described) descriptions_.publish(source_->description());
     report_notices();
     switch (advance) {
         case Advance::end:

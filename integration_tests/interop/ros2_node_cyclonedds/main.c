@@ -4,6 +4,9 @@
  *   robot                       four IMUs of a robot that turns at (0.1, 0.2, -0.3) rad/s, on rt/imu_1/data to rt/imu_4/data, 200 Hz;
  *                               each SIGUSR1 changes what is wrong: the second is silent, well, late, well,
  *                               ahead, well, doubled, well; then the third has a bias of 0.05 rad/s about its own x
+ *   biased                      three IMUs with biases of 0.2 to 0.6 deg/s on rt/imu_1/data to rt/imu_3/data, 200 Hz: at rest for 12 s,
+ *                               then turning about all axes from the stamp that it prints; from SIGUSR1 on the third one's z axis
+ *                               measures 0.4 of its rate
  * Ends on SIGTERM. */
 #include <dds/dds.h>
 #include <math.h>
@@ -110,16 +113,78 @@ static void measure(int imu, uint64_t count, int biased, geometry_msgs_msg_dds__
     *rate = (geometry_msgs_msg_dds__Vector3_){own[0], own[1], own[2]};
 }
 
-static int robot(dds_entity_t participant)
+static void make_writers(dds_entity_t participant, const dds_qos_t* qos, int count, dds_entity_t* topics, dds_entity_t* writers)
 {
-    dds_entity_t writers[IMUS], second = 0, topics[IMUS];
-    dds_qos_t* qos = profile("sensor-data");
-    for (int i = 0; i < IMUS; ++i) {
+    for (int i = 0; i < count; ++i) {
         char name[32];
         snprintf(name, sizeof name, "rt/imu_%d/data", i + 1);
         topics[i] = made(dds_create_topic(participant, &sensor_msgs_msg_dds__Imu__desc, name, NULL, NULL), name);
         writers[i] = made(dds_create_writer(participant, topics[i], qos, NULL), name);
     }
+}
+
+static sensor_msgs_msg_dds__Imu_ stamped(dds_time_t stamp)
+{
+    sensor_msgs_msg_dds__Imu_ m;
+    memset(&m, 0, sizeof m);
+    m.header_.stamp_.sec_ = (int32_t)(stamp / DDS_NSECS_IN_SEC);
+    m.header_.stamp_.nanosec_ = (uint32_t)(stamp % DDS_NSECS_IN_SEC);
+    m.header_.frame_id_ = "imu";
+    m.orientation_covariance_[0] = -1;
+    return m;
+}
+
+/* Standard normal, the same on every run [Marsaglia's xorshift64, Box & Muller]. */
+static double normal(void)
+{
+    static uint64_t state = 88172645463325252ULL;
+    double uniform[2];
+    for (int i = 0; i < 2; ++i) {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        uniform[i] = ((double)(state >> 11) + 1) / 9007199254740993.0;
+    }
+    return sqrt(-2 * log(uniform[0])) * cos(2 * 3.14159265358979323846 * uniform[1]);
+}
+
+/* Three IMUs mounted as the body. integration_tests/interop/ros2_test.py knows the biases and the motion. */
+static int biased(dds_entity_t participant)
+{
+    enum { COUNT = 3 };
+    static const double degree = 3.14159265358979323846 / 180;
+    static const double bias_deg_s[COUNT][3] = {{0.31, -0.22, 0.45}, {-0.6, 0.27, 0.38}, {-0.41, 0.2, 0.55}};
+    static const double amplitude[3] = {0.5, 0.4, 0.6}, pace[3] = {1.1, 0.7, 0.9};
+    dds_entity_t writers[COUNT], topics[COUNT];
+    dds_qos_t* qos = profile("sensor-data");
+    make_writers(participant, qos, COUNT, topics, writers);
+    dds_delete_qos(qos);
+    dds_time_t due = dds_time();
+    const dds_time_t turns = due + DDS_SECS(12);
+    printf("%lld\n", (long long)turns), fflush(stdout);
+    for (; !stop; due += PERIOD_NS) {
+        if (due > dds_time()) dds_sleepfor(due - dds_time());
+        for (int i = 0; i < COUNT; ++i) {
+            const dds_time_t stamp = due - i * DDS_MSECS(1);
+            const double since = stamp > turns ? 1e-9 * (double)(stamp - turns) : 0;
+            double own[3];
+            for (int k = 0; k < 3; ++k) {
+                const double gain = orders > 0 && i == 2 && k == 2 ? 0.4 : 1;
+                own[k] = gain * amplitude[k] * sin(pace[k] * since) + degree * (bias_deg_s[i][k] + 0.05 * normal());
+            }
+            sensor_msgs_msg_dds__Imu_ m = stamped(stamp);
+            m.angular_velocity_ = (geometry_msgs_msg_dds__Vector3_){own[0], own[1], own[2]};
+            dds_write(writers[i], &m);
+        }
+    }
+    return 0;
+}
+
+static int robot(dds_entity_t participant)
+{
+    dds_entity_t writers[IMUS], second = 0, topics[IMUS];
+    dds_qos_t* qos = profile("sensor-data");
+    make_writers(participant, qos, IMUS, topics, writers);
     const char* last = "";
     dds_time_t due = dds_time();
     for (uint64_t count = 0; !stop; ++count, due += PERIOD_NS) {
@@ -136,12 +201,7 @@ static int robot(dds_entity_t participant)
             if (i == 1 && strcmp(mistake, "silent") == 0) continue;
             if (i == 1 && strcmp(mistake, "late") == 0) stamp -= DELAY_NS;
             if (i == 1 && strcmp(mistake, "ahead") == 0) stamp += DDS_SECS(5);
-            sensor_msgs_msg_dds__Imu_ m;
-            memset(&m, 0, sizeof m);
-            m.header_.stamp_.sec_ = (int32_t)(stamp / DDS_NSECS_IN_SEC);
-            m.header_.stamp_.nanosec_ = (uint32_t)(stamp % DDS_NSECS_IN_SEC);
-            m.header_.frame_id_ = "imu";
-            m.orientation_covariance_[0] = -1;
+            sensor_msgs_msg_dds__Imu_ m = stamped(stamp);
             measure(i, count, strcmp(mistake, "biased") == 0, &m.angular_velocity_);
             dds_write(writers[i], &m);
             if (i == 1 && second) dds_write(second, &m);
@@ -154,7 +214,8 @@ static int robot(dds_entity_t participant)
 int main(int argc, char** argv)
 {
     const int reads = argc == 5 && (strcmp(argv[2], "imu") == 0 || strcmp(argv[2], "diagnostics") == 0);
-    if (!reads && (argc != 3 || strcmp(argv[2], "robot") != 0)) return fprintf(stderr, "usage: see the first lines of main.c\n"), 2;
+    const int moves = argc == 3 && (strcmp(argv[2], "robot") == 0 || strcmp(argv[2], "biased") == 0);
+    if (!reads && !moves) return fprintf(stderr, "usage: see the first lines of main.c\n"), 2;
     signal(SIGINT, on_signal);
     signal(SIGTERM, on_signal);
     signal(SIGUSR1, on_order);
@@ -166,7 +227,9 @@ int main(int argc, char** argv)
                            "</Domain></CycloneDDS>"),
          "domain");
     const dds_entity_t participant = made(dds_create_participant(domain, NULL, NULL), "participant");
-    const int result = reads ? read_topic(participant, argv[2], argv[3], argv[4]) : robot(participant);
+    const int result = reads                             ? read_topic(participant, argv[2], argv[3], argv[4])
+                       : strcmp(argv[2], "robot") == 0 ? robot(participant)
+                                                         : biased(participant);
     dds_delete(DDS_CYCLONEDDS_HANDLE);
     return result;
 }
