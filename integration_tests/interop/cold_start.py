@@ -1,0 +1,115 @@
+"""Starts the demo many times with plain readers of `voted` beside it, and counts what they are given twice, out of order, or not at all.
+
+    python3 -m integration_tests.interop.cold_start --starts 100                # a table for each order of starting
+    python3 -m integration_tests.interop.cold_start --starts 10 --only earlier
+
+A reader is an example of idl/examples: the vendor's API, none of our code."""
+import argparse
+import sys
+import time
+from typing import NamedTuple
+
+from integration_tests.harness.foreign import BIN, InteropTest, consumer
+from integration_tests.harness.pipeline import ask_for_priority, at_least_once
+from integration_tests.harness.processes import CONFIGURATIONS
+from integration_tests.interop.examples_test import samples
+
+DURATION_S = 5  # the vendors have found each other within 2 s
+READERS = ("consumer_cyclonedds", "consumer_fastdds")
+ORDERS = ("together", "earlier", "later")
+
+
+class Given(NamedTuple):
+    """What one reader was given in one start."""
+
+    samples: int
+    repeated: int  # or older than one before
+    missing: int  # between the first sample and the last
+    voters: int  # whose samples it was given
+
+    @property
+    def whole(self):
+        return self.samples > 0 and self.repeated == 0 and self.missing == 0
+
+
+def judged(stream):
+    """A repetition of the last attitude, while no frames come, has an output sequence of its own."""
+    newest, repeated, missing = None, 0, 0
+    for sample in stream:
+        if newest is not None and sample.output_sequence <= newest.output_sequence:
+            repeated += 1
+            continue
+        if newest is not None and sample.epoch == newest.epoch:
+            missing += max(0, sample.sequence - newest.sequence - 1)
+        newest = sample
+    return Given(len(stream), repeated, missing, len({sample.voter for sample in stream}))
+
+
+class Start(InteropTest):
+    """One start; a test case for its run directory, its domain and its ends of processes."""
+
+    def runTest(self):
+        pass
+
+    def given(self, order):
+        """@returns {reader: Given}"""
+        if order == "earlier":
+            readers = self.start_readers()
+            time.sleep(1)  # no synchronisation: it is what is tried
+        launch, said = self.start_logged("launch", BIN / "quorient", "launch", CONFIGURATIONS / "demo.yaml", "--domain", self.domain, "--json",
+                                         "--set", f"source.duration_s={DURATION_S}", "--set", "source.faults=[]", "--set", "expect=null")
+        if order == "later":
+            self.eventually(lambda: self.heartbeat("voter-1").exists() and self.heartbeat("voter-1").read_text().split()[1:2] > ["0"], "frames are voted")
+        if order != "earlier":
+            readers = self.start_readers()
+        self.assertEqual(launch.wait(60), 0, said.read_text())
+        for process, _ in readers.values():
+            process.terminate()
+            process.wait(10)
+        return {name: judged(samples(log)) for name, (_, log) in readers.items()}
+
+    def start_readers(self):
+        return {name: self.start_logged(name, *consumer(name), self.domain) for name in READERS}
+
+
+def start(order):
+    one = Start()
+    one.setUp()
+    try:
+        return one.given(order)
+    finally:
+        one.tearDown()
+
+
+def report(order, outcomes):
+    for name in READERS:
+        given = [outcome[name] for outcome in outcomes]
+        yield (f"| {order} | {name} | {sum(one.whole for one in given)} of {len(given)} | {sum(one.repeated > 0 for one in given)} "
+               f"| {max(one.repeated for one in given)} | {sum(one.missing > 0 for one in given)} | {max(one.missing for one in given)} "
+               f"| {sum(one.voters > 1 for one in given)} |")
+
+
+HEADER = """| readers start | reader | every frame once, in order | starts with repeated frames | most of them | starts with missing frames | most of them | starts with both voters |
+|---|---|---|---|---|---|---|---|"""
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--starts", type=at_least_once, default=20)
+    parser.add_argument("--only", choices=ORDERS, help="one order of starting")
+    options = parser.parse_args()
+    for name in READERS:
+        consumer(name)
+    ask_for_priority()
+    print(HEADER, flush=True)
+    whole = True
+    for order in (options.only,) if options.only else ORDERS:
+        outcomes = [start(order) for _ in range(options.starts)]
+        whole = whole and all(one.whole for outcome in outcomes for one in outcome.values())
+        print("\n".join(report(order, outcomes)), flush=True)
+    print(f"\nMade by `python3 -m integration_tests.interop.cold_start {' '.join(sys.argv[1:])}`.")
+    return 0 if whole else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
