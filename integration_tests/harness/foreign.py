@@ -6,10 +6,10 @@ import pathlib
 import signal
 import subprocess
 
-INTEROP = pathlib.Path(__file__).resolve().parent.parent / "interop"
 from integration_tests.harness import exact_json
 from integration_tests.harness.processes import BIN, ProcessTest
 
+INTEROP = pathlib.Path(__file__).resolve().parent.parent / "interop"
 BUILD = pathlib.Path(os.environ.get("QUORIENT_BUILD", BIN.parent))
 # Kept between runs, so that only what changed is built again.
 WORK = BUILD / "integration_tests/interop"
@@ -43,19 +43,27 @@ def example(program):
     return build(installed_idl() / "examples" / program, program)
 
 
-# A Debian release, in whose root the consumers are built and run; else they are this machine's.
-CONSUMERS_RELEASE = os.environ.get("QUORIENT_CONSUMERS_RELEASE")
+# A Debian release, in whose root foreign nodes are built and run, in a system of this machine's own release.
+NODES_RELEASE = os.environ.get("QUORIENT_NODES_RELEASE")
 
 
 @functools.cache
+def built_elsewhere(source, program):
+    """@param source  folder of a project of its own, from the root of ours  @returns the command that starts its program."""
+    in_root = (INTEROP.parent.parent / "deploy/release-root", "--host-network", NODES_RELEASE)
+    idl = "/quorient/idl/quorient_msgs.idl"
+    run(*in_root, "sh", "-c", f"cmake -S {source} -B build/{program} -DQUORIENT_IDL={idl} && cmake --build build/{program}")
+    return (*in_root, f"build/{program}/{program}")
+
+
 def consumer(program):
     """@returns the command that starts the example of that name."""
-    if not CONSUMERS_RELEASE:
-        return (example(program),)
-    in_root = (INTEROP.parent.parent / "deploy/release-root", "--host-network", CONSUMERS_RELEASE)
-    idl = "/quorient/idl/quorient_msgs.idl"
-    run(*in_root, "sh", "-c", f"cmake -S idl/examples/{program} -B build/{program} -DQUORIENT_IDL={idl} && cmake --build build/{program}")
-    return (*in_root, f"build/{program}/{program}")
+    return built_elsewhere(f"idl/examples/{program}", program) if NODES_RELEASE else (example(program),)
+
+
+def node(program):
+    """@returns the command that starts a node of integration_tests/interop."""
+    return built_elsewhere(f"integration_tests/interop/{program}", program) if NODES_RELEASE else (build(INTEROP / program, program),)
 
 
 def conjugate(q):

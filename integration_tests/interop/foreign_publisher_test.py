@@ -5,7 +5,7 @@ import signal
 import unittest
 
 from integration_tests.harness import exact_json
-from integration_tests.harness.foreign import INTEROP, InteropTest, build
+from integration_tests.harness.foreign import InteropTest, node
 from integration_tests.harness.processes import CONFIGURATIONS
 
 REJECTED_INPUT, NO_MATCH, INCOMPATIBLE_QOS, UNKNOWN_REVISION = 42, 44, 45, 54
@@ -43,8 +43,7 @@ class ForeignPublisher(InteropTest):
         _, self.events = self.start_logged("events", *self.command("quorient", "echo", "event", "--json", "--domain", self.domain))
 
     def publish(self, mistake):
-        program = build(INTEROP / "wrong_publisher", "wrong_publisher")
-        publisher, _ = self.start_logged(f"publisher-{mistake}", program, self.domain, mistake)
+        publisher, _ = self.start_logged(f"publisher-{mistake}", *node("wrong_publisher"), self.domain, mistake)
         return publisher
 
     def stop(self, publisher):
