@@ -37,7 +37,7 @@ double mean_of_others(const PerInstrument& values, InstrumentSet present, std::s
 
 }  // namespace
 
-Comparison::Comparison(std::size_t instruments, double interval_s, Mount mount, const Learning::Allowed& allowed, const FieldRules& rules)
+Comparison::Comparison(std::size_t instruments, double interval_s, Mount mount, const Allowed& allowed, const FieldRules& rules)
     : count_(instruments),
       interval_s_(interval_s),
       floor_(allowed.figures.noise_floor_rad_s),

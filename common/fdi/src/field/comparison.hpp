@@ -27,7 +27,7 @@ class Comparison {
 public:
     using Rates = Eigen::Matrix<double, 3, max_instruments>;
 
-    Comparison(std::size_t instruments, double interval_s, Mount mount, const Learning::Allowed& allowed, const FieldRules& rules);
+    Comparison(std::size_t instruments, double interval_s, Mount mount, const Allowed& allowed, const FieldRules& rules);
 
     void reset();
 

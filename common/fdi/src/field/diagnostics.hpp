@@ -1,7 +1,6 @@
 #pragma once
 
-#include "field/axis_fit.hpp"
-#include "field/learning.hpp"
+#include "field/axis_diagnosis.hpp"
 #include "quorient/fdi/detector.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"
 
@@ -17,7 +16,7 @@ struct Blame {
 /// the figures converge, after its isolation.
 class Diagnostics {
 public:
-    Diagnostics(const geometry::SensorCluster& cluster, const InstrumentArray& array, const geometry::Axes& axes, const Learning::Allowed& allowed);
+    Diagnostics(const geometry::SensorCluster& cluster, const InstrumentArray& array, const geometry::Axes& axes, const Allowed& allowed);
 
     void reset();
 
@@ -33,25 +32,18 @@ public:
     /// @param measured  of this instrument [rad/s]
     void add(std::size_t m, const Eigen::Vector3d& measured, const Eigen::Vector3d& rate, const Eigen::Vector3d& acceleration);
 
-    struct Context {
-        bool rested = false;      ///< the instrument's bias was known
-        double usual_noise = 0;   ///< of one frame [rad/s]
-        Eigen::Vector3d zero;     ///< what the instrument's measurement is where it reads exactly 0 [rad/s]
-        Parameters reference;     ///< standard deviations of what the others' mean may be wrong by
-    };
-    void judge(std::size_t m, const Context& context);
+    /// @param zero  what the instrument's measurement is where it reads exactly 0 [rad/s]
+    void judge(std::size_t m, const Eigen::Vector3d& zero, const DiagnosisContext& context);
 
     const AxisDiagnosis& of(std::size_t axis) const { return of_[axis]; }
 
 private:
-    AxisDiagnosis proved_by(const AxisFit& fit, double zero, const Context& context) const;
-    AxisDiagnosis blamed_for(const AxisFit& fit, Diagnosis kind, const Context& context) const;
     std::size_t blamed_axis(std::size_t m) const;
 
     const geometry::SensorCluster& cluster_;
     const InstrumentArray& array_;
     const geometry::Axes& axes_;
-    Learning::Allowed allowed_;
+    Allowed allowed_;
     InstrumentSet accused_;
     std::array<Blame, max_instruments> blame_{};
     std::array<AxisFit, max_axes> fit_{};

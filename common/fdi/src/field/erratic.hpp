@@ -32,7 +32,7 @@ private:
     std::size_t count_;
     std::vector<std::array<InstrumentSet, component_count>> frames_;  ///< ring
     std::size_t next_ = 0;
-    std::array<std::array<std::size_t, max_instruments>, component_count> off_{};
+    std::array<std::array<std::size_t, max_members>, component_count> off_{};
 };
 
 }  // namespace quorient::fdi::field

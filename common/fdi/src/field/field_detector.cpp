@@ -8,22 +8,6 @@
 namespace quorient::fdi {
 namespace {
 
-/// Sound instruments of different make sample up to some milliseconds apart.
-constexpr double delay_of_interval = 0.1;
-constexpr double least_delay_s = 1.0e-3;
-
-/// What of the delay may change without being learned.
-constexpr double unlearned_delay = 0.5;
-
-field::Learning::Allowed allowed_by(const DetectorSettings& settings, double frame_interval_s)
-{
-    const double delay_s = settings.delay_class_s.value_or(std::max(least_delay_s, delay_of_interval * frame_interval_s));
-    return {.figures = figures_of(settings.sensor_class),
-            .calibrated = settings.calibrated,
-            .delay_s = delay_s,
-            .delay_floor_s = unlearned_delay * delay_s};
-}
-
 /// Instruments numbered by their places in the array, and the usual range where none is stated.
 geometry::SensorCluster normalised(const geometry::SensorCluster& cluster, double usual_range_rad_s)
 {
@@ -49,7 +33,7 @@ tl::expected<std::unique_ptr<FieldDetector>, std::string> FieldDetector::make(co
     auto normal = normalised(cluster, figures_of(settings.sensor_class).usual_range_rad_s);
     const auto array = InstrumentArray::make(normal, geometry::AxisVector::Ones(normal.axes.rows()));
     if (!array) return tl::unexpected("field: " + array.error());
-    auto state = std::make_unique<State>(std::move(normal), *array, settings, rules, allowed_by);
+    auto state = std::make_unique<State>(std::move(normal), *array, settings, rules);
     return std::unique_ptr<FieldDetector>(new FieldDetector(std::move(state)));
 }
 

@@ -2,16 +2,10 @@
 
 #include <Eigen/Dense>
 #include <Eigen/SVD>
-#include <algorithm>
 #include <cmath>
 
 namespace quorient::fdi::field {
 namespace {
-
-constexpr double longest_frame_s = 0.0105;
-
-/// An interval this many times the nominal one hides a lost measurement.
-constexpr double gap_intervals = 1.7;
 
 /// The rotation closest to the axes of this instrument.
 Eigen::Matrix3d frame_along(const geometry::SensorCluster& cluster, const InstrumentArray::Instrument& instrument)
@@ -42,47 +36,32 @@ Framing::Framing(const geometry::SensorCluster& cluster, const InstrumentArray& 
     : array_(array),
       common_from_body_(frame_along(cluster, array[0])),
       axes_(cluster.axes * common_from_body_.transpose()),
-      measurement_interval_s_(cluster.interval_s),
-      measurements_per_frame_(std::max<std::size_t>(1, static_cast<std::size_t>(longest_frame_s / cluster.interval_s))),
-      interval_s_(cluster.interval_s * static_cast<double>(measurements_per_frame_))
+      grid_(cluster.interval_s)
 {
 }
 
-void Framing::reset()
+void Framing::begin(const Measurement& measurement)
 {
-    collected_ = 0;
-    gap_ = true;
-}
-
-void Framing::begin(const Measurement& measurement, bool follows)
-{
-    if (!follows) gap_ = true;
     building_.sequence = measurement.identity.sequence;
     building_.interval_s = 0;
     building_.present = InstrumentSet::first(array_.size());
     building_.near_range = 0;
     building_.rate.setZero(3, static_cast<Eigen::Index>(array_.size()));
-    collected_ = 0;
 }
 
 bool Framing::add(const Measurement& measurement)
 {
     if (!(measurement.interval_s > 0)) return false;
-    const bool follows =
-        measurement.identity.sequence == next_sequence_ && measurement.interval_s < gap_intervals * measurement_interval_s_;
-    next_sequence_ = measurement.identity.sequence + 1;
-    if (collected_ == 0 || !follows) begin(measurement, follows);
+    if (grid_.begins(measurement)) begin(measurement);
     building_.present = building_.present & present_in(measurement, array_);
     building_.near_range |= array_.near_range(measurement);
     building_.rate += array_.body_vectors(measurement);
     building_.interval_s += measurement.interval_s;
-    if (++collected_ < measurements_per_frame_) return false;
+    if (!grid_.completes()) return false;
 
     frame_ = building_;
     frame_.rate = common_from_body_ * building_.rate / building_.interval_s;
-    frame_.follows = !gap_;
-    gap_ = false;
-    collected_ = 0;
+    frame_.follows = grid_.follows();
     return true;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "field/frame_grid.hpp"
 #include "field/parameters.hpp"
 #include "quorient/fdi/detector.hpp"
 
@@ -15,8 +16,7 @@ struct Frame {
     InstrumentArray::BodyVectors rate;  ///< rad/s, one column per instrument; meaningless where it is not present
 };
 
-/// Turns measurements into frames. Faster measurements than 125 Hz are summed to frames of up to 10 ms: the constants of the comparison are
-/// those of arrays of 25 to 125 Hz, and what is shorter than a frame cannot harm the attitude.
+/// Turns measurements into frames (FrameGrid).
 ///
 /// The axes of the common frame are those of the first instrument where it has three: a faulty axis of parallel instruments then shows in one
 /// component alone.
@@ -28,25 +28,20 @@ public:
     bool add(const Measurement& measurement);
     const Frame& frame() const { return frame_; }
 
-    void reset();
+    void reset() { grid_.reset(); }
 
-    double interval_s() const { return interval_s_; }  ///< nominal, of a frame
+    double interval_s() const { return grid_.interval_s(); }  ///< nominal, of a frame
     const geometry::Axes& axes() const { return axes_; }  ///< in the common frame
 
 private:
-    void begin(const Measurement& measurement, bool follows);
+    void begin(const Measurement& measurement);
 
     const InstrumentArray& array_;
     Eigen::Matrix3d common_from_body_;
     geometry::Axes axes_;
-    double measurement_interval_s_;
-    std::size_t measurements_per_frame_;
-    double interval_s_;
+    FrameGrid grid_;
     Frame frame_;                                 ///< the newest complete one
     Frame building_;                              ///< rate holds increments
-    std::size_t collected_ = 0;
-    bool gap_ = true;  ///< since the last complete frame
-    std::uint64_t next_sequence_ = 0;
 };
 
 }  // namespace quorient::fdi::field

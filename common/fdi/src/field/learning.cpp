@@ -7,8 +7,12 @@
 namespace quorient::fdi::field {
 namespace {
 
-/// A residual beyond this many of its standard deviations is learned from as if it were so large.
-constexpr double largest_step = 2.5;
+/// Sound sensors of different make sample up to some milliseconds apart.
+constexpr double delay_of_interval = 0.1;
+constexpr double least_delay_s = 1.0e-3;
+
+/// What of the delay may change without being learned.
+constexpr double unlearned_delay = 0.5;
 
 double square(double x)
 {
@@ -16,6 +20,15 @@ double square(double x)
 }
 
 }  // namespace
+
+Allowed allowed_by(const DetectorSettings& settings, double frame_interval_s)
+{
+    const double delay_s = settings.delay_class_s.value_or(std::max(least_delay_s, delay_of_interval * frame_interval_s));
+    return {.figures = figures_of(settings.sensor_class),
+            .calibrated = settings.calibrated,
+            .delay_s = delay_s,
+            .delay_floor_s = unlearned_delay * delay_s};
+}
 
 Learning::Learning(std::size_t instruments, const Allowed& allowed) : count_(instruments), allowed_(allowed)
 {
@@ -25,19 +38,17 @@ Learning::Learning(std::size_t instruments, const Allowed& allowed) : count_(ins
     reset(false);
 }
 
-Covariance Learning::prior(bool rested) const
+Parameters Learning::prior(bool rested) const
 {
-    const ClassFigures& figures = allowed_.figures;
-    const double unknown = allowed_.calibrated ? figures.bias_calibrated_rad_s : figures.bias_unknown_rad_s;
-    const double gain = square(allowed_.calibrated ? figures.gain_calibrated : figures.gain);
-    Covariance covariance = Covariance::Zero();
-    covariance.diagonal() << square(rested ? figures.bias_after_rest_rad_s : unknown), gain, gain, gain, square(allowed_.delay_s);
-    return covariance;
+    const double gain = square(allowed_.gain());
+    Parameters variances;
+    variances << square(allowed_.bias(rested)), gain, gain, gain, square(allowed_.delay_s);
+    return variances;
 }
 
 void Learning::reset(bool rested)
 {
-    covariance_.fill(prior(rested));
+    for (auto& allowance : allowance_) allowance.begin(prior(rested), floor_);
     for (auto& component : learned_) component.fill(Parameters::Zero());
 }
 
@@ -45,38 +56,26 @@ void Learning::admit(std::size_t m, bool rested)
 {
     for (std::size_t c = 0; c < component_count; ++c) {
         learned_[c][m].setZero();
-        covariance_[c] = prior(rested);
+        allowance_[c].begin(prior(rested), floor_);
     }
 }
 
 void Learning::wander(double seconds)
 {
-    const double limit = square(allowed_.figures.bias_unknown_rad_s);
-    for (Covariance& covariance : covariance_)
-        covariance(bias, bias) =
-            std::max(covariance(bias, bias), std::min(limit, covariance(bias, bias) + square(allowed_.figures.bias_wander_rad_s_root_s) * seconds));
-}
-
-double Learning::allowance(std::size_t component, const Parameters& regressors) const
-{
-    return regressors.dot(covariance_[component] * regressors) + floor_.dot(regressors.cwiseAbs2());
+    for (auto& allowance : allowance_) wander_within(allowance, allowed_, seconds);
 }
 
 Parameters Learning::deviations() const
 {
     Parameters largest = Parameters::Zero();
-    for (const Covariance& covariance : covariance_) largest = largest.cwiseMax(Parameters((covariance.diagonal() + floor_).cwiseSqrt()));
+    for (const auto& allowance : allowance_) largest = largest.cwiseMax(allowance.deviations());
     return largest;
 }
 
 void Learning::learn(std::size_t component, const Parameters& regressors, InstrumentSet present, const PerInstrument& residual,
                      double variance, double colour, double interval_s)
 {
-    Covariance& covariance = covariance_[component];
-    const Parameters spread = covariance * regressors;
-    const double known = regressors.dot(spread);
-    const Parameters gain = spread / (known + colour * variance);
-    const double limit = largest_step * std::sqrt(known + variance);
+    const auto [gain, limit] = allowance_[component].learn(regressors, variance, colour);
     PerInstrument step{};
     double mean = 0;
     for (std::size_t m = 0; m < count_; ++m) {
@@ -86,9 +85,7 @@ void Learning::learn(std::size_t component, const Parameters& regressors, Instru
     }
     for (std::size_t m = 0; m < count_; ++m)
         if (present.has(m)) learned_[component][m] += gain * (step[m] - mean);
-    covariance -= gain * spread.transpose();
-    covariance(bias, bias) += square(allowed_.figures.bias_wander_rad_s_root_s) * interval_s;
-    covariance = ((covariance + covariance.transpose()) / 2).eval();
+    allowance_[component].add_variance(bias, square(allowed_.figures.bias_wander_rad_s_root_s) * interval_s);
 }
 
 void Learning::centre(InstrumentSet compared)

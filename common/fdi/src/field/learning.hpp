@@ -1,9 +1,38 @@
 #pragma once
 
 #include "field/parameters.hpp"
-#include "quorient/fdi/sensor_class.hpp"
+#include "quorient/fdi/settings.hpp"
+
+#include <algorithm>
 
 namespace quorient::fdi::field {
+
+/// What sound sensors of an array may differ by before anything is learned.
+struct Allowed {
+    ClassFigures figures;
+    bool calibrated = false;
+    double delay_s = 0;        ///< standard deviation before anything is learned
+    double delay_floor_s = 0;
+
+    /// Standard deviations. @param rested  the biases of a resting second are taken out.
+    double bias(bool rested) const
+    {
+        if (rested) return figures.bias_after_rest_rad_s;
+        return calibrated ? figures.bias_calibrated_rad_s : figures.bias_unknown_rad_s;
+    }
+    double gain() const { return calibrated ? figures.gain_calibrated : figures.gain; }
+};
+
+Allowed allowed_by(const DetectorSettings& settings, double frame_interval_s);
+
+/// Time passed in which nothing could be learned: biases, parameter 0, wander.
+template <Eigen::Index Count>
+void wander_within(Allowance<Count>& allowance, const Allowed& allowed, double seconds)
+{
+    const double wander = allowed.figures.bias_wander_rad_s_root_s;
+    const double room = allowed.figures.bias_unknown_rad_s * allowed.figures.bias_unknown_rad_s - allowance.variance(0);
+    if (room > 0) allowance.add_variance(0, std::min(room, wander * wander * seconds));
+}
 
 /// What sound instruments of an array may differ by, and what of it has been learned.
 ///
@@ -12,13 +41,6 @@ namespace quorient::fdi::field {
 /// are observable, so what is learned sums to zero. A floor F stands for what may change without being learned. [allowance = phi'(P + F) phi]
 class Learning {
 public:
-    struct Allowed {
-        ClassFigures figures;
-        bool calibrated = false;
-        double delay_s = 0;        ///< standard deviation before anything is learned
-        double delay_floor_s = 0;
-    };
-
     Learning(std::size_t instruments, const Allowed& allowed);
 
     /// Nothing is learned; the allowances are those of the class. @param rested  the biases of a resting second are taken out.
@@ -38,7 +60,7 @@ public:
     const Parameters& learned(std::size_t component, std::size_t m) const { return learned_[component][m]; }
 
     /// Variance of what a sound instrument may still differ by: phi'(P + F) phi, for a frame's regressors or for sums of them.
-    double allowance(std::size_t component, const Parameters& regressors) const;
+    double allowance(std::size_t component, const Parameters& regressors) const { return allowance_[component].of(regressors); }
 
     const Allowed& allowed() const { return allowed_; }
 
@@ -56,12 +78,12 @@ public:
     void centre(InstrumentSet compared);
 
 private:
-    Covariance prior(bool rested) const;
+    Parameters prior(bool rested) const;
 
     std::size_t count_;
     Allowed allowed_;
     Parameters floor_;  ///< diagonal of F
-    std::array<Covariance, component_count> covariance_;
+    std::array<Allowance<parameter_count>, component_count> allowance_;
     std::array<std::array<Parameters, max_instruments>, component_count> learned_;
 };
 

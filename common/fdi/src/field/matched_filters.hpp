@@ -1,7 +1,7 @@
 #pragma once
 
 #include "field/learning.hpp"
-#include "field/window_sums.hpp"
+#include "field/windows.hpp"
 #include "quorient/fdi/field_detector.hpp"
 
 namespace quorient::fdi::field {
@@ -53,9 +53,6 @@ public:
     /// The same for two instruments, which cannot be told apart: `instrument` says nothing.
     Suspicion disagreement(const WindowSums& sums, const Learning& learning, InstrumentSet two, const Ages& age, std::uint64_t frame) const;
 
-    /// Frames after which a window of this length is looked at again.
-    static std::uint64_t frames_between_looks(std::size_t window);
-
 private:
     struct Window;
     struct Contrast;
@@ -66,15 +63,11 @@ private:
     double agreeing(const Window& window, Filter filter, std::size_t m, double certainty, bool positive) const;
     bool matters(const Window& window, std::size_t m) const;
     bool persists(const Window& window, Filter filter, std::size_t m) const;
-    bool in_three_quarters(const Window& window, Filter filter, std::size_t m) const;
-    bool spans(const Window& window, Filter filter, std::size_t m) const;
     double contradiction_before(const Window& window, Filter filter, std::size_t m, std::size_t age) const;
-    bool is_due(std::size_t index, std::uint64_t frame) const;
 
     std::size_t count_;
-    double interval_s_;
     FieldRules rules_;
-    std::size_t lock_;  ///< frames of the shortest window that latches
+    Windows windows_;
 };
 
 }  // namespace quorient::fdi::field

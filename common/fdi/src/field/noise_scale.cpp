@@ -7,25 +7,14 @@
 namespace quorient::fdi::field {
 namespace {
 
-constexpr std::array memory_s{0.3, 3.0};
 constexpr double mean_memory_s = 0.3;
-constexpr double fastest_rate = 0.5;
-
-/// A square beyond this many variances counts as so many: outliers are not noise.
-constexpr double largest_ratio = 9;
-
-/// The mean of min(square / variance, largest_ratio) times this is 1.
-constexpr double truncation = 1.05;
-
-/// The least B; for arrays like the MIMU4444 it is about 1.
-constexpr double least_moving = 0.25;
 
 }  // namespace
 
 NoiseScale::NoiseScale(std::size_t instruments, double floor_rad_s, double interval_s)
     : count_(instruments),
       floor_(floor_rad_s * floor_rad_s),
-      rate_{std::min(fastest_rate, interval_s / memory_s[0]), std::min(fastest_rate, interval_s / memory_s[1])},
+      rate_(TwoTermNoise::rates(interval_s)),
       mean_rate_(std::min(1.0, interval_s / mean_memory_s))
 {
     reset();
@@ -33,9 +22,8 @@ NoiseScale::NoiseScale(std::size_t instruments, double floor_rad_s, double inter
 
 void NoiseScale::reset()
 {
-    const Term initial{.standing = floor_, .moving = 1};
     for (std::size_t c = 0; c < component_count; ++c) {
-        pairs_[c].fill({.term = {initial, initial}, .variance = floor_});
+        pairs_[c].fill({.noise = TwoTermNoise(floor_), .variance = floor_});
         mean_[c].fill(0);
         others_[c].fill(floor_);
         own_[c].fill(floor_);
@@ -49,7 +37,7 @@ void NoiseScale::reckon(std::size_t component, double motion, InstrumentSet comp
     for (std::size_t i = 0; i < count_; ++i)
         for (std::size_t j = i + 1; j < count_; ++j) {
             Pair& p = pair(component, i, j);
-            p.variance = std::max(p.term[0].standing + p.term[0].moving * motion, p.term[1].standing + p.term[1].moving * motion);
+            p.variance = p.noise.variance(motion);
         }
     typical_[component] = median_without(component, compared, nobody);
     for (std::size_t m = 0; m < count_; ++m) {
@@ -87,22 +75,10 @@ bool NoiseScale::is_within(double standing, double moving, InstrumentSet compare
         for (std::size_t i = 0; i < count_; ++i)
             for (std::size_t j = i + 1; j < count_; ++j) {
                 if (!compared.has(i) || !compared.has(j)) continue;
-                const Term& slow = pair(c, i, j).term.back();
-                if (slow.standing > std::max(standing, floor_) || slow.moving > std::max(moving, least_moving)) return false;
+                const TwoTermNoise::Term& slow = pair(c, i, j).noise.slow();
+                if (slow.standing > std::max(standing, floor_) || slow.moving > std::max(moving, TwoTermNoise::least_moving)) return false;
             }
     return true;
-}
-
-void NoiseScale::learn(Pair& pair, double half_square, double motion) const
-{
-    for (std::size_t speed = 0; speed < pair.term.size(); ++speed) {
-        Term& term = pair.term[speed];
-        const double variance = term.standing + term.moving * motion;
-        const double excess = truncation * std::min(largest_ratio, half_square / variance) - 1;
-        const double share = term.standing / variance;
-        term.standing = std::max(floor_, term.standing * (1 + rate_[speed] * share * excess));
-        term.moving = std::max(least_moving, term.moving * (1 + rate_[speed] * (1 - share) * excess));
-    }
 }
 
 void NoiseScale::learn(std::size_t component, InstrumentSet present, const PerInstrument& quick, const PerInstrument& clipped)
@@ -113,7 +89,7 @@ void NoiseScale::learn(std::size_t component, InstrumentSet present, const PerIn
         for (std::size_t j = i + 1; j < count_; ++j) {
             if (!present.has(j)) continue;
             const double difference = quick[i] - quick[j];
-            learn(pair(component, i, j), difference * difference / 2, motion_[component]);
+            pair(component, i, j).noise.learn(difference * difference / 2, motion_[component], rate_, floor_);
         }
     }
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "field/parameters.hpp"
+#include "field/two_term_noise.hpp"
 
 #include <limits>
 
@@ -8,8 +9,7 @@ namespace quorient::fdi::field {
 
 /// How noisy the differences between instruments are right now, measured on the differences themselves.
 ///
-/// For every pair (i, j) the variance v = A + B q of one instrument's noise in one frame is learned in two terms: A static, B in proportion to q,
-/// the variance that wandering sampling instants make of the motion. Each is followed at two speeds (0.3 s and 3 s), and the larger one counts.
+/// For every pair (i, j) the variance of one instrument's noise in one frame is followed as TwoTermNoise.
 /// An instrument is judged by the noise of the *others* (median of the pairs without it): a faulty one cannot make itself inconspicuous.
 /// Its own noise, as far as it is larger, widens its limits up to a bound: sound instruments may be several times noisier than their neighbours.
 class NoiseScale {
@@ -41,16 +41,11 @@ public:
     double own_cap = 6;  ///< times the others' standard deviation
 
 private:
-    struct Term {
-        double standing;  ///< A
-        double moving;    ///< B
-    };
     struct Pair {
-        std::array<Term, 2> term;  ///< quick and slow memory
+        TwoTermNoise noise;
         double variance;
     };
 
-    void learn(Pair& pair, double half_square, double motion) const;
     double median_without(std::size_t component, InstrumentSet compared, std::size_t left_out) const;
     Pair& pair(std::size_t component, std::size_t i, std::size_t j) { return pairs_[component][i * max_instruments + j]; }
     const Pair& pair(std::size_t component, std::size_t i, std::size_t j) const { return pairs_[component][i * max_instruments + j]; }
@@ -59,7 +54,7 @@ private:
 
     std::size_t count_;
     double floor_;  ///< of A [(rad/s)^2]
-    std::array<double, 2> rate_;
+    TwoTermNoise::Rates rate_;
     double mean_rate_;
     std::array<std::array<Pair, max_instruments * max_instruments>, component_count> pairs_;  ///< i < j
     std::array<PerInstrument, component_count> mean_{};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "field/allowance.hpp"
 #include "quorient/fdi/instrument_array.hpp"
 
 #include <Eigen/Core>
@@ -11,16 +12,17 @@
 namespace quorient::fdi::field {
 
 inline constexpr std::size_t max_instruments = InstrumentArray::max_instruments;
+inline constexpr std::size_t max_members = max_axes;  ///< of a comparison of any kind: instruments or single axes
 inline constexpr std::size_t component_count = 3;  ///< x, y, z of the common frame
 
 /// What a sound instrument may differ by from the others, per component: e = bias + gains' omega + delay * d omega/dt.
 enum Parameter : Eigen::Index { bias, gain_x, gain_y, gain_z, delay, parameter_count };
 
-using Parameters = Eigen::Matrix<double, parameter_count, 1, Eigen::DontAlign>;
-using Covariance = Eigen::Matrix<double, parameter_count, parameter_count, Eigen::DontAlign>;
+using Parameters = Allowance<parameter_count>::Vector;
+using Covariance = Allowance<parameter_count>::Matrix;
 using PerInstrument = std::array<double, max_instruments>;
 
-/// Which instruments; bit m stands for the instrument at place m of the array.
+/// Which instruments, or which axes where single axes are compared; bit m stands for the one at place m.
 class InstrumentSet {
 public:
     constexpr InstrumentSet() = default;
@@ -31,6 +33,9 @@ public:
         set.bits_ = (1U << count) - 1;
         return set;
     }
+
+    static constexpr InstrumentSet of(std::uint32_t bits) { return InstrumentSet(bits); }
+    constexpr std::uint32_t bits() const { return bits_; }
 
     constexpr bool has(std::size_t m) const { return (bits_ >> m & 1U) != 0; }
     constexpr std::size_t size() const { return static_cast<std::size_t>(std::popcount(bits_)); }

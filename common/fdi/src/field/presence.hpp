@@ -23,9 +23,9 @@ public:
 private:
     std::size_t count_;
     InstrumentSet delivering_;
-    std::array<std::uint32_t, max_instruments> missing_{};  ///< bit k = no data k frames ago
-    std::array<std::uint32_t, max_instruments> run_{};      ///< frames in a row with data, as far as that matters
-    std::array<std::uint64_t, max_instruments> silent_{};
+    std::array<std::uint32_t, max_members> missing_{};  ///< bit k = no data k frames ago
+    std::array<std::uint32_t, max_members> run_{};      ///< frames in a row with data, as far as that matters
+    std::array<std::uint64_t, max_members> silent_{};
 };
 
 }  // namespace quorient::fdi::field

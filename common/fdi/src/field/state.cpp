@@ -21,12 +21,15 @@ constexpr double noise_known_s = 0.5;
 /// The bound of learned gains on a structure: what flexes looks like a gain.
 constexpr double structure_gain_error = 0.10;
 
+/// So many instruments always stay in use.
+constexpr std::size_t least_in_use = 2;
+
 constexpr std::uint64_t frames_between_diagnoses = 10;
 
 }  // namespace
 
 FieldDetector::State::State(geometry::SensorCluster cluster, const InstrumentArray& array, const DetectorSettings& settings,
-                            const FieldRules& rules, field::Learning::Allowed (*allowed_by)(const DetectorSettings&, double))
+                            const FieldRules& rules)
     : cluster_(std::move(cluster)),
       array_(array),
       rules_(rules),
@@ -36,9 +39,10 @@ FieldDetector::State::State(geometry::SensorCluster cluster, const InstrumentArr
       presence_(array_.size()),
       start_(array_.size(), framing_.interval_s(), figures_),
       saturation_(cluster_, framing_.axes()),
-      comparison_(array_.size(), framing_.interval_s(), settings.mount, allowed_by(settings, framing_.interval_s()), rules),
+      comparison_(array_.size(), framing_.interval_s(), settings.mount, field::allowed_by(settings, framing_.interval_s()), rules),
       filters_(array_.size(), framing_.interval_s(), rules),
-      diagnostics_(cluster_, array_, framing_.axes(), comparison_.learning().allowed())
+      diagnostics_(cluster_, array_, framing_.axes(), comparison_.learning().allowed()),
+      accusations_(array_.size(), least_in_use, framing_.interval_s())
 {
     if (rules_.fast_lane) fast_lane_ = field::FastLane::make(settings, cluster_);
     if (mount_ == Mount::structure) figures_.largest_gain_error = std::max(figures_.largest_gain_error, structure_gain_error);
@@ -57,9 +61,8 @@ void FieldDetector::State::reset()
     learning_begun_ = false;
     frames_ = 0;
     ages_.fill(0);
-    accusations_.fill({});
+    accusations_.reset();
     degraded_.fill({});
-    calm_from_ = 0;
     disturbance_ = 0;
     certainty_ = 0;
     disagreement_until_ = 0;
@@ -73,7 +76,7 @@ void FieldDetector::State::exclude(AxisMask excluded)
     for (std::size_t m = 0; m < array_.size(); ++m) {
         now.set(m, (array_[m].mask & excluded_axes_) != 0);
         if (now.has(m) == excluded_.has(m)) continue;
-        accusations_[m] = {};
+        accusations_.acquit(m);
         ages_[m] = 0;
         if (now.has(m)) {
             diagnostics_.accuse(m, {});
@@ -106,7 +109,7 @@ field::InstrumentSet FieldDetector::State::comparable() const
     InstrumentSet set = start_.started() & presence_.delivering();
     set = set - excluded_;
     for (std::size_t m = 0; m < array_.size(); ++m)
-        if (accusations_[m].named) set.remove(m);
+        if (accusations_.named(m)) set.remove(m);
     return set;
 }
 
@@ -205,7 +208,7 @@ std::size_t FieldDetector::State::oldest_kept() const
 bool FieldDetector::State::may_learn() const
 {
     const bool knows_noise = frames_ >= frames_in(noise_known_s);
-    return rules_.learning && knows_noise && frames_ >= calm_from_ && disturbance_ < largest_learned_from && comparable().size() >= 3;
+    return rules_.learning && knows_noise && accusations_.calm(frames_) && disturbance_ < largest_learned_from && comparable().size() >= 3;
 }
 
 /// The middle one of three frames.
@@ -238,11 +241,6 @@ std::uint64_t FieldDetector::State::frames_in(double seconds) const
     return static_cast<std::uint64_t>(std::lround(seconds / framing_.interval_s()));
 }
 
-bool FieldDetector::State::is_left_out(std::size_t m) const
-{
-    return accusations_[m].named || (frames_ > 0 && frames_ <= accusations_[m].left_out_until);
-}
-
 /// The accused in the middle one of three frames, against the others.
 void FieldDetector::State::diagnose()
 {
@@ -250,8 +248,7 @@ void FieldDetector::State::diagnose()
     const bool knows_rate = !saturation_.is_common() && !saturation_.blinds(0) && !saturation_.blinds(1) && !saturation_.blinds(2);
     for (std::size_t m = 0; m < array_.size(); ++m) {
         if (!diagnostics_.accused(m)) continue;
-        const Accusation& accused = accusations_[m];
-        const bool holds = accused.named || excluded_.has(m) || frames_ < calm_from_;
+        const bool holds = accusations_.named(m) || excluded_.has(m) || !accusations_.calm(frames_);
         if (!holds) {
             diagnostics_.acquit(m);
             continue;
@@ -265,7 +262,7 @@ void FieldDetector::State::diagnose()
         if (frames_ % frames_between_diagnoses != 0) continue;
         const double usual = std::sqrt(std::max({comparison_.noise().typical(0), comparison_.noise().typical(1), comparison_.noise().typical(2)}));
         const double share = 1 / std::sqrt(static_cast<double>(others.size()));
-        diagnostics_.judge(m, {start_.rested(m), usual, -start_.bias(m), comparison_.learning().deviations() * share});
+        diagnostics_.judge(m, -start_.bias(m), {start_.rested(m), usual, comparison_.learning().deviations() * share});
     }
 }
 

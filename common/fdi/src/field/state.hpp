@@ -1,5 +1,6 @@
 #pragma once
 
+#include "field/accusations.hpp"
 #include "field/comparison.hpp"
 #include "field/diagnostics.hpp"
 #include "field/fast_lane.hpp"
@@ -15,8 +16,7 @@ namespace quorient::fdi {
 /// The order of things in one frame; each of them is a class of its own.
 class FieldDetector::State {
 public:
-    State(geometry::SensorCluster cluster, const InstrumentArray& array, const DetectorSettings& settings, const FieldRules& rules,
-          field::Learning::Allowed (*allowed_by)(const DetectorSettings&, double));
+    State(geometry::SensorCluster cluster, const InstrumentArray& array, const DetectorSettings& settings, const FieldRules& rules);
 
     void assess(const Measurement& measurement, Assessment& assessment);
     void exclude(AxisMask excluded);
@@ -35,17 +35,6 @@ private:
         field::Comparison::Rates rates;
         InstrumentSet present;  ///< compared, and with data
         Eigen::Vector3d consensus;
-    };
-
-    /// What is held against one instrument.
-    struct Accusation {
-        static constexpr std::size_t most_returns = 6;
-
-        bool named = false;                  ///< until it is excluded
-        std::uint64_t left_out_until = 0;    ///< frame count
-        std::uint64_t onset = never;         ///< of the present contradiction, or of the named fault
-        std::array<std::uint64_t, most_returns> begun{};  ///< frame counts of the latest contradictions, ring
-        std::size_t contradictions = 0;
     };
 
     /// Why an instrument is reported as degraded, and until which frame count.
@@ -68,9 +57,7 @@ private:
     void degrade(std::size_t m, Diagnosis why);
     void follow_fast_lane();
     void leave_out(std::size_t m, std::uint64_t onset, std::uint64_t frames, const field::Blame& blame);
-    void keep_two(std::size_t accused);
-    bool is_left_out(std::size_t m) const;
-    bool comes_and_goes(Accusation& accused) const;
+    bool is_left_out(std::size_t m) const { return accusations_.left_out(m, frames_); }
     std::uint64_t onset_of(std::size_t m, std::size_t window) const;
     std::uint64_t frames_in(double seconds) const;
     void diagnose();
@@ -110,9 +97,8 @@ private:
     std::uint64_t frames_ = 0;  ///< compared
     field::MatchedFilters::Ages ages_{};
     std::array<std::uint64_t, field::ring_length> sequences_{};  ///< ring, of the frames compared
-    std::array<Accusation, field::max_instruments> accusations_{};
+    field::Accusations accusations_;
     std::array<Degraded, field::max_instruments> degraded_{};
-    std::uint64_t calm_from_ = 0;      ///< frame count: nobody has been contradicted for a while
     double disturbance_ = 0;
     double certainty_ = 0;             ///< the largest of the newest frame
     double largest_lasting_ = 0;

@@ -8,23 +8,16 @@
 namespace quorient::fdi {
 namespace {
 
-/// A suspicion counts where it exceeds what speaks against any other instrument by this factor.
-constexpr double margin = 1.25;
+constexpr double margin = field::Windows::margin;
 
 /// How long a contradiction keeps learning off after it.
 constexpr double disturbance_memory = 0.9;  ///< per frame
-
-/// An instrument that was left out returns, and learning goes on, so long after the last contradiction.
-constexpr double calm_s = 0.5;
 
 /// A degraded instrument is reported for so long after the last sign of it.
 constexpr double degraded_s = 1;
 
 /// A fault that began no later after the first comparison has been learned from.
 constexpr double misled_s = 1;
-
-/// An instrument that is left out more than Accusation::most_returns times within this time is erratic.
-constexpr double whipsaw_s = 10;
 
 field::Blame blame_of(const field::Suspicion& suspicion)
 {
@@ -46,7 +39,7 @@ void FieldDetector::State::judge(const field::Suspicions& found)
     largest_lasting_ = std::max(largest_lasting_, found.closest);
     const Suspicion& top = found.lasting.certainty > found.brief.certainty ? found.lasting : found.brief;
     certainty_ = top.certainty;
-    const bool calm = frames_ >= calm_from_;
+    const bool calm = accusations_.calm(frames_);
     const Suspicion& proved = found.lasting;
     const bool is_proof = proved.certainty > 1 && proved.certainty > margin * found.lasting_against_others(proved.instrument);
     if (is_proof && proved.filter == field::Filter::delay && mount_ == Mount::structure)
@@ -62,27 +55,21 @@ void FieldDetector::State::judge(const field::Suspicions& found)
 /// Since when an instrument is left out, or else the begin of this window.
 std::uint64_t FieldDetector::State::onset_of(std::size_t m, std::size_t window) const
 {
-    const bool known = is_left_out(m) && accusations_[m].onset != never;
-    return known ? accusations_[m].onset : begin_of(window);
+    return accusations_.onset_or(m, begin_of(window), frames_);
 }
 
 void FieldDetector::State::contradict(const Suspicion& suspicion)
 {
     const std::size_t m = suspicion.instrument;
-    leave_out(m, onset_of(m, suspicion.window), field::MatchedFilters::frames_between_looks(suspicion.window), blame_of(suspicion));
+    leave_out(m, onset_of(m, suspicion.window), field::Windows::frames_between_looks(suspicion.window), blame_of(suspicion));
 }
 
 /// For so many frames and the time after them.
 void FieldDetector::State::leave_out(std::size_t m, std::uint64_t onset, std::uint64_t frames, const field::Blame& blame)
 {
-    Accusation& accused = accusations_[m];
-    const bool begins = !is_left_out(m);
-    accused.onset = onset;
-    accused.left_out_until = std::max(accused.left_out_until, frames_ + frames + frames_in(calm_s));
-    calm_from_ = frames_ + frames_in(calm_s);
-    keep_two(m);
+    const bool erratic = accusations_.leave_out(m, onset, frames, frames_, comparable());
     if (!diagnostics_.accused(m)) diagnostics_.accuse(m, blame);
-    if (begins && comes_and_goes(accused) && mount_ == Mount::board) name(m, onset, {blame.component, Diagnosis::erratic});
+    if (erratic && mount_ == Mount::board) name(m, onset, {blame.component, Diagnosis::erratic});
 }
 
 void FieldDetector::State::follow_fast_lane()
@@ -93,39 +80,13 @@ void FieldDetector::State::follow_fast_lane()
     if (!finding) return;
     for (std::size_t m = 0; m < array_.size(); ++m) {
         if (!compared.has(m) || (array_[m].mask & finding->axes) == 0) continue;
-        const bool known = is_left_out(m) && accusations_[m].onset != never;
-        leave_out(m, known ? accusations_[m].onset : std::min(finding->onset, last_sequence_), 1, {0, Diagnosis::bias});
-    }
-}
-
-/// Counts a contradiction that begins. @returns whether there are too many of them.
-bool FieldDetector::State::comes_and_goes(Accusation& accused) const
-{
-    std::uint64_t& oldest = accused.begun[accused.contradictions % accused.begun.size()];
-    const bool too_many = accused.contradictions >= accused.begun.size() && frames_ - oldest < frames_in(whipsaw_s);
-    oldest = frames_;
-    ++accused.contradictions;
-    return too_many;
-}
-
-/// At least two instruments stay in use: the newest accusation is the best founded one.
-void FieldDetector::State::keep_two(std::size_t accused)
-{
-    std::size_t in_use = 0;
-    const InstrumentSet compared = comparable();
-    for (std::size_t m = 0; m < array_.size(); ++m) in_use += compared.has(m) && !is_left_out(m) ? 1 : 0;
-    for (std::size_t m = 0; m < array_.size() && in_use < 2; ++m) {
-        if (m == accused || !compared.has(m) || !is_left_out(m)) continue;
-        accusations_[m].left_out_until = 0;
-        ++in_use;
+        leave_out(m, accusations_.onset_or(m, std::min(finding->onset, last_sequence_), frames_), 1, {0, Diagnosis::bias});
     }
 }
 
 void FieldDetector::State::name(std::size_t m, std::uint64_t onset, const field::Blame& blame)
 {
-    Accusation& accused = accusations_[m];
-    accused.named = true;
-    accused.onset = onset;
+    accusations_.name(m, onset);
     ages_[m] = 0;
     diagnostics_.accuse(m, blame);
     const auto misled = static_cast<std::uint64_t>(std::lround(misled_s / cluster_.interval_s));
@@ -177,7 +138,7 @@ void FieldDetector::State::judge_two(InstrumentSet two)
     certainty_ = suspicion.certainty;
     if (suspicion.certainty <= 1) return;
     if (frames_ > disagreement_until_) disagreement_onset_ = begin_of(suspicion.window);
-    disagreement_until_ = std::max(disagreement_until_, frames_ + field::MatchedFilters::frames_between_looks(suspicion.window));
+    disagreement_until_ = std::max(disagreement_until_, frames_ + field::Windows::frames_between_looks(suspicion.window));
 }
 
 }  // namespace quorient::fdi

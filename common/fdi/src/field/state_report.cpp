@@ -17,15 +17,14 @@ void FieldDetector::State::report(const Measurement& measurement, Assessment& as
     assessment.outcome = !learning_begun_ || compared.size() < 2 ? Outcome::warming_up : Outcome::healthy;
     assessment.saturated = saturation_.is_common();
     for (std::size_t m = 0; m < array_.size(); ++m) {
-        const Accusation& accused = accusations_[m];
-        if (accused.named) {
+        if (accusations_.named(m)) {
             assessment.outcome = Outcome::isolated;
             assessment.isolated |= array_[m].mask;
-            assessment.onset = std::min(assessment.onset, accused.onset);
+            assessment.onset = std::min(assessment.onset, accusations_.onset(m));
         }
-        if (!accused.named && !(is_left_out(m) && compared.has(m))) continue;
+        if (!accusations_.named(m) && !(is_left_out(m) && compared.has(m))) continue;
         assessment.provisional |= array_[m].mask;
-        assessment.provisional_from = std::min(assessment.provisional_from, accused.onset);
+        assessment.provisional_from = std::min(assessment.provisional_from, accusations_.onset(m));
     }
     if (assessment.outcome == Outcome::healthy && assessment.provisional != 0) {
         assessment.outcome = Outcome::suspect;
