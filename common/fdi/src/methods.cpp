@@ -2,6 +2,8 @@
 
 #include "arrays/accumulating_detector.hpp"
 #include "quorient/fdi/field_detector.hpp"
+#include "quorient/fdi/noise.hpp"
+#include "quorient/geometry/redundancy.hpp"
 #include "four_axes/extrapolation_detector.hpp"
 #include "single_frame/guaranteed_detector.hpp"
 #include "single_frame/invariants_detector.hpp"
@@ -11,6 +13,7 @@
 #include "single_frame/subset_detector.hpp"
 #include "four_axes/vector_detector.hpp"
 #include "single_frame/voting_detector.hpp"
+#include "skewed/skewed_detector.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -29,6 +32,31 @@ Made made(const DetectorSettings& settings, const geometry::SensorCluster& clust
     return std::unique_ptr<Detector>(std::move(*detector));
 }
 
+/// Whether there are two instruments or more, and each measures all three directions.
+bool has_instruments(const geometry::SensorCluster& cluster)
+{
+    std::size_t count = 0;
+    for (std::size_t instrument = 0; instrument < cluster.instrument_name.size(); ++instrument) {
+        const AxisMask axes = cluster.axes_of(instrument);
+        if (axes == 0) continue;
+        if (geometry::rank_of(cluster.axes, axes) < 3) return false;
+        ++count;
+    }
+    return count >= 2;
+}
+
+Made make_field(const DetectorSettings& settings, const geometry::SensorCluster& cluster)
+{
+    return has_instruments(cluster) ? made<FieldDetector>(settings, cluster) : made<SkewedDetector>(settings, cluster);
+}
+
+/// Single axes whose noise is stated are those of a laboratory: field's allowances would hide what these can show.
+bool asks_for_allowances(const DetectorSettings& settings, const geometry::SensorCluster& cluster)
+{
+    const bool is_asked_more = settings.instruments || settings.margin || settings.max_faults.value_or(1) != 1;
+    return !is_asked_more && !has_instruments(cluster) && cluster.interval_s > 0 && !sigma_of_axes(settings, cluster);
+}
+
 /// With fewer instruments it could detect and not isolate; two faults at once and their margin are subset's.
 bool asks_for_field(const DetectorSettings& settings, const geometry::SensorCluster& cluster)
 {
@@ -42,6 +70,7 @@ Made make_automatic(const DetectorSettings& asked, const geometry::SensorCluster
     if (cluster.size() == FourAxisDetector::axis_count) return made<VectorDetector>(settings, cluster);
     if (asks_for_field(settings, cluster))
         if (auto detector = made<FieldDetector>(settings, cluster)) return detector;  // else these are no instruments of three directions
+    if (asks_for_allowances(settings, cluster) && cluster.size() >= SkewedDetector::least_axes) return made<SkewedDetector>(settings, cluster);
     if (settings.instruments) return made<SubsetDetector>(settings, cluster);
     if (!settings.margin) settings.margin = SubsetDetector::default_margin;
     return made<GltDetector>(settings, cluster);
@@ -53,7 +82,8 @@ std::span<const Method> methods()
 {
     using enum MethodInput;
     static const std::vector<Method> table{
-        {"auto", "4 to 24", "vector on four axes; field on three or more triads; else subset where faults take instruments; else glt",
+        {"auto", "4 to 24", "vector on four axes; field on three or more triads, and on five or more single axes whose noise nobody states; else subset where "
+         "faults take instruments; else glt",
          MethodInput::rows, {}, "", make_automatic},
         {"guaranteed", "max_faults + 4 to 8", "set-membership estimation: never wrong while noise stays within its bound", row,
          {"bound", "threshold", "max-faults", "direction"},
@@ -74,8 +104,8 @@ std::span<const Method> methods()
          "predicted, triad_modulus, working_triad, z1, z2, determinant, fallback", made<ExtrapolationDetector>},
         {"vector", "4", "the triad whose body vector fits the extrapolated one", rows, {"tolerance"},
          "predicted, triad_distance, working_triad, order", made<VectorDetector>},
-        {"field", "6 to 24", "instruments that each span space, on any array: allowances by class, noise measured online", instruments,
-         {}, "", made<FieldDetector>},
+        {"field", "5 to 24", "instruments that each span space, or single axes, on any array: allowances by class, noise measured online",
+         instruments, {}, "", make_field},
         {"accumulating", "6 to 24", "instruments that each span space, compared over windows of up to 512 frames", instruments, {}, "",
          made<AccumulatingDetector>},
     };

@@ -174,7 +174,8 @@ inline void listen(const Assessment& assessment, std::uint64_t sequence, Told& t
     }
 }
 
-inline Told play(FieldScene& scene, Detector& detector, double seconds, AxisMask excluded = 0)
+template <class Scene>
+Told play(Scene& scene, Detector& detector, double seconds, AxisMask excluded = 0)
 {
     Told told;
     Assessment assessment;

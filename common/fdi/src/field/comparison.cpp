@@ -1,6 +1,7 @@
 #include "field/comparison.hpp"
 
 #include "field/dead_zone.hpp"
+#include "field/frame_rules.hpp"
 #include "field/order.hpp"
 
 #include <algorithm>
@@ -9,23 +10,7 @@
 namespace quorient::fdi::field {
 namespace {
 
-/// Sampling instants wander by this part of the interval, along the change of rate; across it by a part of that.
-constexpr double jitter_intervals = 0.008;
-constexpr double jitter_across = 0.3;
-
-/// Up to this many times the least noise, motion does not lower a frame's weight.
-constexpr double weight_floor = 3;
-
-constexpr double clip_allowances = 9;  ///< standard deviations of what sound instruments may differ by, 1.5 times the lasting limit
-constexpr double clip_noises = 4;      ///< and of noise
-constexpr double clip_pair = 1.5;      ///< variance of a difference to the mean of two, in units of one
-
-/// A frame in which an instrument deviates by more is off.
-constexpr double off_sigmas = 6;
 constexpr double vibration_tolerance = 1.5;
-
-/// Residuals are coloured: so many frames are one independent piece of information.
-constexpr double colour = 10;
 
 double mean_of_others(const PerInstrument& values, InstrumentSet present, std::size_t m, std::size_t count)
 {
@@ -91,10 +76,9 @@ Comparison::Deviation Comparison::deviation_of(std::size_t component, const Moti
 
     const double along = (motion.step_before(c) * motion.step_before(c) + motion.step_after(c) * motion.step_after(c)) / 2;
     const double all = (motion.step_before.squaredNorm() + motion.step_after.squaredNorm()) / 2;
-    const double wander = jitter_intervals * jitter_intervals * (along + jitter_across * (all - along));
+    const double wander = wander_variance(along, all);
     noise_.reckon(component, wander, input.present);
-    const double calm = weight_floor * weight_floor * floor_ * floor_;
-    deviation.weight = calm / (calm + wander);
+    deviation.weight = frame_weight(wander, floor_);
     deviation.allowance = learning_.allowance(component, phi);
     clip(component, input, deviation);
     return deviation;
@@ -113,8 +97,7 @@ void Comparison::clip(std::size_t component, const Input& input, Deviation& devi
     const double middle = median(sorted.data(), n);
     for (std::size_t m = 0; m < count_; ++m) {
         if (!input.present.has(m)) continue;
-        const double limit = clip_allowances * std::sqrt(clip_pair * deviation.allowance) +
-                             clip_noises * std::sqrt(clip_pair * noise_.own(component, m));
+        const double limit = clip_limit(deviation.allowance, noise_.own(component, m));
         deviation.raw[m] -= middle;
         deviation.clipped[m] = rules_.clipping ? std::clamp(deviation.raw[m], -limit, limit) : deviation.raw[m];
     }
@@ -221,7 +204,7 @@ void Comparison::add(const Motion& motion, const Input& input)
     for (std::size_t c = 0; c < component_count; ++c) {
         if (input.blind[c]) continue;
         const Deviation deviation = deviation_of(c, motion, input);
-        frame_bound_[c] = off_sigmas * std::sqrt(clip_pair * (deviation.allowance + noise_.typical(c)));
+        frame_bound_[c] = off_sigmas * std::sqrt(pair * (deviation.allowance + noise_.typical(c)));
         PerInstrument quick{};
         for (std::size_t m = 0; m < count_; ++m)
             if (input.present.has(m)) quick[m] = noise_.quick(c, m, deviation.raw[m]);

@@ -1,6 +1,7 @@
 #include "quorient/fdi/field_detector.hpp"
 
 #include "field/state.hpp"
+#include "field/state_rules.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -27,9 +28,7 @@ geometry::SensorCluster normalised(const geometry::SensorCluster& cluster, doubl
 tl::expected<std::unique_ptr<FieldDetector>, std::string> FieldDetector::make(const DetectorSettings& settings,
                                                                              const geometry::SensorCluster& cluster, const FieldRules& rules)
 {
-    if (!(cluster.interval_s > 0)) return tl::unexpected(std::string("field: the cluster's interval_s must be known"));
-    if (settings.delay_class_s && !(*settings.delay_class_s > 0))
-        return tl::unexpected("field: the delay class must be above 0 s, got " + std::to_string(*settings.delay_class_s));
+    if (const auto usable = field::check(settings, cluster); !usable) return tl::unexpected(usable.error());
     auto normal = normalised(cluster, figures_of(settings.sensor_class).usual_range_rad_s);
     const auto array = InstrumentArray::make(normal, geometry::AxisVector::Ones(normal.axes.rows()));
     if (!array) return tl::unexpected("field: " + array.error());

@@ -31,22 +31,6 @@ struct MatchedFilters::Contrast {
     std::size_t others;
 };
 
-double Suspicions::against_others(std::size_t m) const
-{
-    double largest = 0;
-    for (std::size_t j = 0; j < max_instruments; ++j)
-        if (j != m) largest = std::max({largest, brief_of[j], lasting_of[j]});
-    return largest;
-}
-
-double Suspicions::lasting_against_others(std::size_t m) const
-{
-    double largest = 0;
-    for (std::size_t j = 0; j < max_instruments; ++j)
-        if (j != m) largest = std::max(largest, lasting_of[j]);
-    return largest;
-}
-
 MatchedFilters::MatchedFilters(std::size_t instruments, double interval_s, const FieldRules& rules)
     : count_(instruments), rules_(rules), windows_(interval_s)
 {
@@ -124,18 +108,8 @@ void MatchedFilters::examine(const Window& window, Filter filter, Suspicions& fo
             found.disturbance = std::max(found.disturbance, certain);
             certain = agreeing(window, filter, m, certain, contrast.difference > 0);
         }
-        const Suspicion suspicion{certain, m, window.component, window.frames, filter};
-        const bool lasts = window.lasting && certain > std::max(Windows::watched_from, std::min(1.0, found.closest)) && persists(window, filter, m);
-        if (lasts) found.closest = std::max(found.closest, certain);
-        if (window.lasting && (certain <= 1 || lasts)) {
-            found.lasting_of[m] = std::max(found.lasting_of[m], certain);
-            found.disturbance = std::max(found.disturbance, certain);
-            if (certain > found.lasting.certainty) found.lasting = suspicion;
-            continue;
-        }
-        if (filter != Filter::bias || (rules_.smallest_angle && !matters(window, m))) continue;
-        found.brief_of[m] = std::max(found.brief_of[m], certain);
-        if (certain > found.brief.certainty) found.brief = suspicion;
+        found.take({certain, m, window.component, window.frames, filter}, window.lasting, [&] { return persists(window, filter, m); },
+                   [&] { return filter == Filter::bias && (!rules_.smallest_angle || matters(window, m)); });
     }
 }
 

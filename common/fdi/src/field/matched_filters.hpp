@@ -1,33 +1,10 @@
 #pragma once
 
 #include "field/learning.hpp"
-#include "field/windows.hpp"
+#include "field/suspicions.hpp"
 #include "quorient/fdi/field_detector.hpp"
 
 namespace quorient::fdi::field {
-
-/// A contradiction between one instrument and the others.
-struct Suspicion {
-    double certainty = 0;  ///< C; above 1 it is more than noise and allowances explain
-    std::size_t instrument = 0;
-    std::size_t component = 0;
-    std::size_t window = 0;  ///< frames up to the newest one
-    Filter filter = Filter::bias;
-};
-
-/// What all windows of one frame say.
-struct Suspicions {
-    Suspicion brief;                ///< the largest that may only be passing
-    Suspicion lasting;              ///< the largest of a window of `lock` or more, in three of its four quarters
-    PerInstrument brief_of{};       ///< the largest against each instrument
-    PerInstrument lasting_of{};
-    double disturbance = 0;         ///< the largest of a long window, before its low-passed twin agreed
-    double closest = 0;             ///< the largest of a long window that lasts, looked for from 0.4 on
-
-    /// The largest against any instrument but this one.
-    double against_others(std::size_t m) const;
-    double lasting_against_others(std::size_t m) const;
-};
 
 /// Compares each instrument with the others over windows of 1 to 512 frames, through three matched filters. With D = E_m - E_o, the difference
 /// to the others' mean,

@@ -4,24 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace quorient::fdi::field {
-namespace {
-
-constexpr double degree = std::numbers::pi / 180;
-
-constexpr double first_s = 1.0;
-constexpr double largest_deviation_at_rest = 0.5 * degree;  ///< rad/s, of every axis
-constexpr double largest_rate_at_rest = 6 * degree;         ///< rad/s, of the median instrument
-constexpr double recent_s = 0.5;
-
-}  // namespace
 
 Start::Start(std::size_t instruments, double interval_s, const ClassFigures& figures)
     : count_(instruments),
-      frames_needed_(static_cast<std::size_t>(std::lround(first_s / interval_s))),
-      recent_rate_(std::min(1.0, interval_s / recent_s)),
+      frames_needed_(FirstSecond::frames_needed(interval_s)),
+      recent_rate_(std::min(1.0, interval_s / FirstSecond::recent_s)),
       figures_(figures)
 {
     reset();
@@ -47,8 +36,7 @@ void Start::forget(std::size_t m)
 
 double Start::First::largest_deviation() const
 {
-    const Eigen::Vector3d variance = squares / static_cast<double>(frames) - mean().cwiseAbs2();
-    return std::sqrt(std::max(0.0, variance.maxCoeff()));
+    return std::max({of[0].deviation(), of[1].deviation(), of[2].deviation()});
 }
 
 void Start::take_bias_of_others(std::size_t m)
@@ -76,9 +64,8 @@ InstrumentSet Start::add(const Frame& frame)
             continue;
         }
         First& first = first_[m];
-        first.sum += rate;
-        first.squares += rate.cwiseAbs2();
-        if (++first.frames >= frames_needed_) ended.add(m);
+        for (std::size_t c = 0; c < component_count; ++c) first.of[c].add(rate(static_cast<Eigen::Index>(c)));
+        if (first.of[0].frames() >= frames_needed_) ended.add(m);
     }
     if (ended.empty()) return ended;
 
@@ -105,13 +92,13 @@ double Start::level(std::size_t m, std::size_t component, InstrumentSet ended) c
 bool Start::is_rest(InstrumentSet ended) const
 {
     for (std::size_t m = 0; m < count_; ++m)
-        if (ended.has(m) && first_[m].largest_deviation() > largest_deviation_at_rest) return false;
+        if (ended.has(m) && first_[m].largest_deviation() > FirstSecond::largest_deviation_at_rest) return false;
     for (std::size_t c = 0; c < component_count; ++c) {
         PerInstrument levels{};
         std::size_t n = 0;
         for (std::size_t m = 0; m < count_; ++m)
             if ((ended | started_).has(m)) levels[n++] = level(m, c, ended);
-        if (std::abs(median(levels.data(), n)) > largest_rate_at_rest) return false;
+        if (std::abs(median(levels.data(), n)) > FirstSecond::largest_rate_at_rest) return false;
     }
     return true;
 }

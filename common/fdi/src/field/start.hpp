@@ -1,5 +1,6 @@
 #pragma once
 
+#include "field/first_second.hpp"
 #include "field/framing.hpp"
 #include "quorient/fdi/sensor_class.hpp"
 
@@ -38,11 +39,9 @@ public:
 
 private:
     struct First {
-        std::size_t frames = 0;
-        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-        Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+        std::array<FirstSecond, component_count> of;
 
-        Eigen::Vector3d mean() const { return sum / static_cast<double>(frames); }
+        Eigen::Vector3d mean() const { return {of[0].mean(), of[1].mean(), of[2].mean()}; }
         double largest_deviation() const;
     };
 

@@ -1,5 +1,7 @@
 #include "field/state.hpp"
 
+#include "field/state_rules.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -9,22 +11,11 @@ namespace {
 
 using field::component_count;
 
-/// Above this certainty of a lasting contradiction nothing is learned: a fault must not be learned away.
-constexpr double largest_learned_from = 0.6;
-
-/// After so long a silence an instrument has been switched off: nothing is known of its bias.
-constexpr double forgotten_after_s = 5;
-
-/// Nothing is learned before the noise of the differences is known: with too small a noise the first frames would be taken for certain.
-constexpr double noise_known_s = 0.5;
-
 /// The bound of learned gains on a structure: what flexes looks like a gain.
 constexpr double structure_gain_error = 0.10;
 
 /// So many instruments always stay in use.
 constexpr std::size_t least_in_use = 2;
-
-constexpr std::uint64_t frames_between_diagnoses = 10;
 
 }  // namespace
 
@@ -130,7 +121,7 @@ void FieldDetector::State::advance(const field::Frame& frame)
         if (learning_begun_) comparison_.learning().wander(missing * cluster_.interval_s);
     }
     last_sequence_ = frame.sequence;
-    const auto forgotten = static_cast<std::uint64_t>(forgotten_after_s / framing_.interval_s());
+    const auto forgotten = static_cast<std::uint64_t>(field::forgotten_after_s / framing_.interval_s());
     for (std::size_t m = 0; m < array_.size(); ++m)
         if (frame.present.has(m) && presence_.silent_frames(m) > forgotten) start_.forget(m);
     presence_.update(frame.present);
@@ -207,8 +198,8 @@ std::size_t FieldDetector::State::oldest_kept() const
 
 bool FieldDetector::State::may_learn() const
 {
-    const bool knows_noise = frames_ >= frames_in(noise_known_s);
-    return rules_.learning && knows_noise && accusations_.calm(frames_) && disturbance_ < largest_learned_from && comparable().size() >= 3;
+    const bool knows_noise = frames_ >= frames_in(field::noise_known_s);
+    return rules_.learning && knows_noise && accusations_.calm(frames_) && disturbance_ < field::largest_learned_from && comparable().size() >= 3;
 }
 
 /// The middle one of three frames.
@@ -259,7 +250,7 @@ void FieldDetector::State::diagnose()
         const auto rate_in = [&](const Pending& frame) { return comparison_.consensus(frame.rates, others, frame.consensus); };
         const Eigen::Vector3d acceleration = (rate_in(pending_[2]) - rate_in(pending_[0])) / (2 * framing_.interval_s());
         diagnostics_.add(m, now.rates.col(static_cast<Eigen::Index>(m)), rate_in(now), acceleration);
-        if (frames_ % frames_between_diagnoses != 0) continue;
+        if (frames_ % field::frames_between_diagnoses != 0) continue;
         const double usual = std::sqrt(std::max({comparison_.noise().typical(0), comparison_.noise().typical(1), comparison_.noise().typical(2)}));
         const double share = 1 / std::sqrt(static_cast<double>(others.size()));
         diagnostics_.judge(m, -start_.bias(m), {start_.rested(m), usual, comparison_.learning().deviations() * share});

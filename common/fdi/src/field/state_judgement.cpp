@@ -2,22 +2,16 @@
 
 #include "field/state.hpp"
 
+#include "field/state_rules.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace quorient::fdi {
 namespace {
 
-constexpr double margin = field::Windows::margin;
-
-/// How long a contradiction keeps learning off after it.
-constexpr double disturbance_memory = 0.9;  ///< per frame
-
 /// A degraded instrument is reported for so long after the last sign of it.
 constexpr double degraded_s = 1;
-
-/// A fault that began no later after the first comparison has been learned from.
-constexpr double misled_s = 1;
 
 field::Blame blame_of(const field::Suspicion& suspicion)
 {
@@ -35,19 +29,14 @@ using field::component_count;
 
 void FieldDetector::State::judge(const field::Suspicions& found)
 {
-    disturbance_ = std::max(found.disturbance, disturbance_memory * disturbance_);
+    disturbance_ = std::max(found.disturbance, field::disturbance_memory * disturbance_);
     largest_lasting_ = std::max(largest_lasting_, found.closest);
-    const Suspicion& top = found.lasting.certainty > found.brief.certainty ? found.lasting : found.brief;
-    certainty_ = top.certainty;
+    certainty_ = found.largest().certainty;
     const bool calm = accusations_.calm(frames_);
-    const Suspicion& proved = found.lasting;
-    const bool is_proof = proved.certainty > 1 && proved.certainty > margin * found.lasting_against_others(proved.instrument);
-    if (is_proof && proved.filter == field::Filter::delay && mount_ == Mount::structure)
-        return degrade(proved.instrument, Diagnosis::delay);
-    if (top.certainty > 1 && top.certainty > margin * found.against_others(top.instrument)) contradict(top);
-    if (is_proof) {
-        return name(proved.instrument, onset_of(proved.instrument, proved.window), blame_of(proved));
-    }
+    const auto proved = found.proved();
+    if (proved && proved->filter == field::Filter::delay && mount_ == Mount::structure) return degrade(proved->instrument, Diagnosis::delay);
+    if (const auto contradicted = found.contradicted()) contradict(*contradicted);
+    if (proved) return name(proved->instrument, onset_of(proved->instrument, proved->window), blame_of(*proved));
     if (rules_.erratic) check_erratic();
     if (rules_.outside_class && calm) check_class();
 }
@@ -89,7 +78,7 @@ void FieldDetector::State::name(std::size_t m, std::uint64_t onset, const field:
     accusations_.name(m, onset);
     ages_[m] = 0;
     diagnostics_.accuse(m, blame);
-    const auto misled = static_cast<std::uint64_t>(std::lround(misled_s / cluster_.interval_s));
+    const auto misled = static_cast<std::uint64_t>(std::lround(field::misled_s / cluster_.interval_s));
     if (onset <= learning_from_ + misled) forget_learned();
     else comparison_.learning().centre(comparable());
 }
