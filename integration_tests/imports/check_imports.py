@@ -46,6 +46,7 @@ INNER = {
         "four_axes": {"single_frame"},
         "arrays": {"single_frame"},
         "field": {"arrays"},
+        "skewed": {"field"},
         "observers": set(),
         "verdict": {"observers"},
     },

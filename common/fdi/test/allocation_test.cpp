@@ -1,8 +1,9 @@
 // No method may touch the heap per frame: every allocation of this program is counted.
 
 #include "allocation_count.hpp"
-#include "field_scene.hpp"
+#include "skewed_scene.hpp"
 #include "quorient/fdi/methods.hpp"
+#include "skewed/skewed_detector.hpp"
 #include "test_clusters.hpp"
 
 #include <gtest/gtest.h>
@@ -82,6 +83,32 @@ TEST(Allocation, does_not_happen_per_frame_in_the_field_detector)
         for (int frame = 0; frame < 200; ++frame) detector->assess(scene.next(), assessment);
         EXPECT_EQ(quorient::test::allocation_count() - before, 0U);
         EXPECT_GT(named, 0U);
+    }
+}
+
+TEST(Allocation, does_not_happen_per_frame_in_the_field_detector_of_single_axes)
+{
+    for (const char* layout : {"cone-5", "octahedron-8", "triads-8"}) {
+        SkewedScene scene(layout, 1);
+        scene.spoil = [](std::uint64_t sequence, SkewedScene::Rates& rates) {
+            if (sequence > 600) rates[1] += 20;
+            if (sequence > 700 && sequence < 720) rates[3] = std::nan("");
+        };
+        scene.next();
+        const auto detector = SkewedDetector::make({}, scene.cluster).value();
+        Assessment assessment;
+        std::size_t named = 0;
+        const std::size_t before = quorient::test::allocation_count();
+        for (int frame = 0; frame < 800; ++frame) {
+            detector->assess(scene.next(), assessment);
+            named += assessment.outcome != Outcome::healthy ? 1 : 0;
+        }
+        detector->exclude(axis_bit(1));
+        for (int frame = 0; frame < 100; ++frame) detector->assess(scene.next(), assessment);
+        detector->exclude(0);
+        for (int frame = 0; frame < 200; ++frame) detector->assess(scene.next(), assessment);
+        EXPECT_EQ(quorient::test::allocation_count() - before, 0U) << layout;
+        EXPECT_GT(named, 100U) << layout;
     }
 }
 

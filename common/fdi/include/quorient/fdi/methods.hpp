@@ -41,8 +41,9 @@ std::span<const Method> methods();
 const Method* find_method(std::string_view word);
 
 /// The method of settings.method on this cluster. `auto`: `vector` on four axes (parity alone cannot isolate there); `field` on
-/// three or more instruments that each measure all three directions, unless settings.margin or max_faults ask for more; else `subset`
-/// where settings.instruments; else `glt` with the margin of `subset`.
+/// three or more instruments that each measure all three directions, unless settings.margin or max_faults ask for more; likewise `field` on
+/// five or more single axes whose noise neither the settings nor the cluster state; else `subset` where settings.instruments; else `glt` with
+/// the margin of `subset`.
 /// @returns why not: an unknown name (with the known ones), a number of axes the method does not allow, a figure out of range, or
 ///          noise that is known neither from the settings nor from the cluster.
 tl::expected<std::unique_ptr<Detector>, std::string> make_detector(const DetectorSettings& settings,
