@@ -9,6 +9,9 @@
 namespace quorient::fdi::skewed {
 namespace {
 
+/// One frame's parity must point so much better at an axis than at any other.
+constexpr double off_margin = 1.1;
+
 double square(double x)
 {
     return x * x;
@@ -131,21 +134,23 @@ PerAxis AxisComparison::clipped(double allowance, const AxisParity& parity) cons
     return values;
 }
 
-/// The axis whose parity no noise and no allowance explains, neither as it is nor without its mean, if it is the likeliest one.
+/// The axis whose parity no noise and no allowance explains, neither as it is nor without its mean, if no other one explains it nearly as well.
 AxisSet AxisComparison::off(const PerAxis& quick, double quick_allowance, const AxisParity& parity) const
 {
     AxisSet found;
     if (parity.redundancy() < 2) return found;
     std::size_t likeliest = count_;
     double most = 0;
+    double second = 0;
     for (std::size_t i = 0; i < count_; ++i) {
         if (!parity.set().has(i) || !parity.sees(i)) continue;
         const double along = std::abs(parity.split(i, quick).along);
+        second = std::max(second, std::min(along, most));
         if (along <= most) continue;
         most = along;
         likeliest = i;
     }
-    if (likeliest == count_) return found;
+    if (likeliest == count_ || most < off_margin * second) return found;
     const double limit = field::off_sigmas * std::sqrt(noise_.others(likeliest) + quick_allowance);
     if (most > limit && std::abs(parity.split(likeliest, residual_).along) > limit) found.add(likeliest);
     return found;

@@ -69,6 +69,13 @@ Eigen::Vector3d AxisParity::body_without(std::size_t axis, const PerAxis& z, con
     return body(z) - estimator_.col(static_cast<Eigen::Index>(axis)) * (residual[axis] / share(axis, axis));
 }
 
+double AxisParity::spread(const Eigen::Vector3d& direction) const
+{
+    double squares = 0;
+    for (Eigen::Index i = 0; i < estimator_.cols(); ++i) squares += std::pow(estimator_.col(i).dot(direction), 2);
+    return std::sqrt(squares);
+}
+
 AxisParity::Split AxisParity::split(std::size_t axis, const PerAxis& residual) const
 {
     double squares = 0;

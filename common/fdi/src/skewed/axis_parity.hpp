@@ -40,7 +40,7 @@ public:
     Eigen::Vector3d body_without(std::size_t axis, const PerAxis& z, const PerAxis& residual) const;
 
     /// Standard deviation of the body vector along this direction, in units of one axis'.
-    double spread(const Eigen::Vector3d& direction) const { return (estimator_.transpose() * direction).norm(); }
+    double spread(const Eigen::Vector3d& direction) const;
 
     /// The part of a residual along the parity of axis j, and the root mean square of what is left per degree of freedom.
     struct Split {

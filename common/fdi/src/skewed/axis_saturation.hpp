@@ -4,8 +4,8 @@
 
 namespace quorient::fdi::skewed {
 
-/// Where the motion goes beyond the axes' ranges. An axis at its range is believed only if it is borne out: by another one at its range that
-/// points alike, or by a rate of the others near it. Alone and not borne out it is ordinary data, i.e. a fault.
+/// Where the motion goes beyond the axes' ranges. An axis at its range is believed only if it is borne out: by another one at its range, or
+/// by a rate of the others near it. Alone and not borne out it is ordinary data, i.e. a fault.
 class AxisSaturation {
 public:
     explicit AxisSaturation(const geometry::SensorCluster& cluster) : cluster_(cluster) {}

@@ -50,6 +50,7 @@ private:
     void judge_last_parity();
     void check_erratic();
     void check_class();
+    std::optional<std::size_t> outside_class(Eigen::Index parameter, const skewed::PerAxis& residual, const skewed::AxisParity& parity) const;
     void disagree(AxisSet candidates, std::size_t window);
     void leave_out(const field::Suspicion& suspicion);
     void name(std::size_t axis, std::uint64_t onset, Diagnosis why);

@@ -26,8 +26,10 @@ void SkewedDetector::State::judge(const field::Suspicions& found)
     certainty_ = found.largest().certainty;
     const bool calm = accusations_.calm(frames_);
     const auto proved = found.proved();
-    if (const auto contradicted = found.contradicted()) leave_out(*contradicted);
-    if (proved) {
+    const auto contradicted = found.contradicted();
+    if (contradicted) leave_out(*contradicted);
+    // Whatever part of another axis' fault looks like one of this axis: that one is contradicted more, even where it does not last yet.
+    if (proved && contradicted && contradicted->instrument == proved->instrument) {
         const std::size_t axis = proved->instrument;
         return name(axis, accusations_.onset_or(axis, begin_of(proved->window), frames_), kind_of(proved->filter));
     }
@@ -120,18 +122,33 @@ void SkewedDetector::State::check_class()
         skewed::PerAxis learned{};
         for (std::size_t i = 0; i < cluster_.size(); ++i)
             if (parity.set().has(i)) learned[i] = comparison_.learned(i)(parameter);
-        const skewed::PerAxis residual = parity.residual(learned);
-        for (std::size_t i = 0; i < cluster_.size(); ++i) {
-            if (!parity.set().has(i) || !parity.sees(i)) continue;
-            const double largest_bias = start_.rested(i) ? figures_.largest_drift_rad_s : figures_.largest_bias_rad_s;
-            const double largest = parameter == skewed::bias ? largest_bias : figures_.largest_gain_error;
-            const auto [along, others] = parity.split(i, residual);
-            const double rho = field::Windows::scatter_factor(parity.redundancy() - 1) * std::sqrt(parity.share(i, i));
-            if (std::abs(along) <= std::sqrt(of_three) * largest + rho * others) continue;
-            return name(i, accusations_.onset_or(i, begin_of(oldest_kept()), frames_),
-                        parameter == skewed::bias ? Diagnosis::outside_class : Diagnosis::gain);
-        }
+        const auto outside = outside_class(parameter, parity.residual(learned), parity);
+        if (!outside) continue;
+        return name(*outside, accusations_.onset_or(*outside, begin_of(oldest_kept()), frames_),
+                    parameter == skewed::bias ? Diagnosis::outside_class : Diagnosis::gain);
     }
+}
+
+/// The axis whose learned parameter lies outside the class, if no other axis explains it nearly as well.
+std::optional<std::size_t> SkewedDetector::State::outside_class(Eigen::Index parameter, const skewed::PerAxis& residual,
+                                                                const skewed::AxisParity& parity) const
+{
+    std::optional<std::size_t> outside;
+    double most = 0;
+    double second = 0;
+    for (std::size_t i = 0; i < cluster_.size(); ++i) {
+        if (!parity.set().has(i) || !parity.sees(i)) continue;
+        const double largest_bias = start_.rested(i) ? figures_.largest_drift_rad_s : figures_.largest_bias_rad_s;
+        const double largest = parameter == skewed::bias ? largest_bias : figures_.largest_gain_error;
+        const auto [along, others] = parity.split(i, residual);
+        const double rho = field::Windows::scatter_factor(parity.redundancy() - 1) * std::sqrt(parity.share(i, i));
+        const double times = std::abs(along) / (std::sqrt(of_three) * largest + rho * others);
+        second = std::max(second, std::min(times, most));
+        if (times <= most) continue;
+        most = times;
+        outside = i;
+    }
+    return most > std::max(1.0, field::Windows::margin * second) ? outside : std::nullopt;
 }
 
 void SkewedDetector::State::report(const Measurement& measurement, Assessment& assessment) const
