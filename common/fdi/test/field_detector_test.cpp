@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <algorithm>
 
 namespace quorient::fdi {
 namespace {
@@ -270,6 +271,40 @@ TEST(FieldDetector, names_one_that_is_at_its_range_alone)
     const Told told = play(scene, *detector_on(scene), onset_s + 2);
     EXPECT_EQ(told.named, axes_of(0));
     EXPECT_EQ(told.saturated_frames, 0U);
+}
+
+/// A turn of 600 deg/s about z from 8 s to 12 s; the first instrument measures 300 deg/s at most.
+FieldScene scene_of_unequal_ranges(std::size_t instruments, std::uint64_t seed)
+{
+    static constexpr double smaller_deg_s = 300;
+    FieldScene scene(instruments, seed);
+    scene.motion = [](double t) -> Eigen::Vector3d {
+        return FieldScene::flight(t) + Eigen::Vector3d(0, 0, t > 8 && t < 12 ? 600 * std::sin(std::numbers::pi * (t - 8) / 4) : 0);
+    };
+    scene.spoil = [](std::uint64_t, FieldScene::Rates& rates) {
+        for (std::size_t axis = 0; axis < 3; ++axis) rates[axis] = std::clamp(rates[axis], -smaller_deg_s, smaller_deg_s);
+    };
+    scene.cluster.range.head(3).setConstant(smaller_deg_s * degree);
+    return scene;
+}
+
+TEST(FieldDetector, leaves_an_instrument_out_while_the_others_measure_more_than_its_range)
+{
+    std::uint64_t begins = 800;
+    while (scene_of_unequal_ranges(2, 15).motion(static_cast<double>(begins) * frame_s).z() < 300) ++begins;
+    for (const std::size_t instruments : {2U, 3U, 8U}) {
+        FieldScene scene = scene_of_unequal_ranges(instruments, 15);
+        const auto detector = detector_on(scene);
+        EXPECT_EQ(play(scene, *detector, 8).provisional, 0U);
+        const Told turning = play(scene, *detector, 3.2);
+        EXPECT_EQ(turning.provisional, axes_of(0)) << instruments;
+        EXPECT_NEAR(static_cast<double>(turning.provisional_from), static_cast<double>(begins), 4) << instruments;
+        EXPECT_EQ(turning.diagnosis[2].kind, Diagnosis::saturated);
+        EXPECT_GT(turning.provisional_frames, 250U) << "the turn is beyond 300 deg/s for 2.7 s";
+        const Told after = play(scene, *detector, 1.8);
+        EXPECT_EQ(turning.named | after.named, 0U);
+        EXPECT_LT(after.provisional_frames, 80U) << "half a second after the turn, and it is back";
+    }
 }
 
 TEST(FieldDetector, says_of_two_instruments_that_they_disagree_and_never_which_is_wrong)

@@ -28,17 +28,16 @@ void NoiseScale::reset()
         others_[c].fill(floor_);
         own_[c].fill(floor_);
         typical_[c] = floor_;
+        std::size_t n = 0;
+        for (std::size_t i = 0; i < count_; ++i)
+            for (std::size_t j = i + 1; j < count_; ++j) ranked_[c][n++] = {floor_, static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j)};
     }
 }
 
 void NoiseScale::reckon(std::size_t component, double motion, InstrumentSet compared)
 {
     motion_[component] = motion;
-    for (std::size_t i = 0; i < count_; ++i)
-        for (std::size_t j = i + 1; j < count_; ++j) {
-            Pair& p = pair(component, i, j);
-            p.variance = p.noise.variance(motion);
-        }
+    rank(component, motion);
     typical_[component] = median_without(component, compared, nobody);
     for (std::size_t m = 0; m < count_; ++m) {
         if (!compared.has(m)) continue;
@@ -54,19 +53,33 @@ void NoiseScale::reckon(std::size_t component, double motion, InstrumentSet comp
     }
 }
 
+void NoiseScale::rank(std::size_t component, double motion)
+{
+    auto& ranked = ranked_[component];
+    const std::size_t pairs = count_ * (count_ - 1) / 2;
+    for (std::size_t n = 0; n < pairs; ++n) {
+        Ranked& one = ranked[n];
+        Pair& p = pair(component, one.i, one.j);
+        one.variance = p.variance = p.noise.variance(motion);
+    }
+    for (std::size_t n = 1; n < pairs; ++n) {
+        const Ranked one = ranked[n];
+        std::size_t place = n;
+        for (; place > 0 && ranked[place - 1].variance > one.variance; --place) ranked[place] = ranked[place - 1];
+        ranked[place] = one;
+    }
+}
+
 /// The median over the pairs of compared instruments; the floor where there are none.
 double NoiseScale::median_without(std::size_t component, InstrumentSet compared, std::size_t left_out) const
 {
-    std::array<double, max_instruments * max_instruments / 2> variances;
-    std::size_t n = 0;
-    for (std::size_t i = 0; i < count_; ++i) {
-        if (i == left_out || !compared.has(i)) continue;
-        for (std::size_t j = i + 1; j < count_; ++j)
-            if (j != left_out && compared.has(j)) variances[n++] = pair(component, i, j).variance;
-    }
-    if (n == 0) return floor_;
-    std::nth_element(variances.begin(), variances.begin() + n / 2, variances.begin() + n);
-    return variances[n / 2];
+    if (left_out != nobody) compared.remove(left_out);
+    const std::size_t members = compared.size();
+    std::size_t below = members * (members - 1) / 2 / 2;
+    if (members < 2) return floor_;
+    for (const Ranked& one : ranked_[component])
+        if (compared.has(one.i) && compared.has(one.j) && below-- == 0) return one.variance;
+    return floor_;
 }
 
 bool NoiseScale::is_within(double standing, double moving, InstrumentSet compared) const

@@ -3,6 +3,7 @@
 #include "field/parameters.hpp"
 #include "field/two_term_noise.hpp"
 
+#include <cstdint>
 #include <limits>
 
 namespace quorient::fdi::field {
@@ -46,10 +47,18 @@ private:
         double variance;
     };
 
+    struct Ranked {
+        double variance;
+        std::uint8_t i;
+        std::uint8_t j;
+    };
+
+    void rank(std::size_t component, double motion);
     double median_without(std::size_t component, InstrumentSet compared, std::size_t left_out) const;
     Pair& pair(std::size_t component, std::size_t i, std::size_t j) { return pairs_[component][i * max_instruments + j]; }
     const Pair& pair(std::size_t component, std::size_t i, std::size_t j) const { return pairs_[component][i * max_instruments + j]; }
 
+    static constexpr std::size_t max_pairs = max_instruments * (max_instruments - 1) / 2;
     static constexpr std::size_t nobody = std::numeric_limits<std::size_t>::max();
 
     std::size_t count_;
@@ -57,6 +66,7 @@ private:
     TwoTermNoise::Rates rate_;
     double mean_rate_;
     std::array<std::array<Pair, max_instruments * max_instruments>, component_count> pairs_;  ///< i < j
+    std::array<std::array<Ranked, max_pairs>, component_count> ranked_;  ///< the pairs by their variance; kept, since it changes little from frame to frame
     std::array<PerInstrument, component_count> mean_{};
     std::array<PerInstrument, component_count> others_{};
     std::array<PerInstrument, component_count> own_{};

@@ -21,6 +21,7 @@ Saturation::Saturation(const geometry::SensorCluster& cluster, const geometry::A
 void Saturation::reset()
 {
     blind_frames_.fill(0);
+    limited_ = {};
     common_ = false;
 }
 
@@ -38,6 +39,7 @@ bool Saturation::borne_out(std::size_t axis, const Frame& frame, InstrumentSet c
 void Saturation::update(const Frame& frame, InstrumentSet compared, const Eigen::Vector3d& consensus)
 {
     std::array<InstrumentSet, component_count> beyond;
+    std::array<InstrumentSet, component_count> believed_beyond;
     std::array<bool, component_count> blinded{};
     for (std::size_t axis = 0; frame.near_range != 0 && axis < cluster_.size(); ++axis) {
         const std::size_t m = cluster_.instrument[axis];
@@ -47,13 +49,18 @@ void Saturation::update(const Frame& frame, InstrumentSet compared, const Eigen:
             const double share = std::abs(axes_(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(c)));
             if (share < touching) continue;
             blinded[c] = blinded[c] || believed;
-            if (share > alike) beyond[c].add(m);
+            if (share <= alike) continue;
+            beyond[c].add(m);
+            if (believed) believed_beyond[c].add(m);
         }
     }
     common_ = false;
+    limited_ = {};
     for (std::size_t c = 0; c < component_count; ++c) {
         const InstrumentSet here = compared & frame.present;
-        common_ = common_ || (here.size() >= 2 && beyond[c] == here);
+        const bool all = here.size() >= 2 && beyond[c] == here;
+        common_ = common_ || all;
+        if (!all) limited_ = limited_ | believed_beyond[c];
         if (blinded[c]) blind_frames_[c] = frames_blinded;
         else if (blind_frames_[c] > 0) --blind_frames_[c];
     }

@@ -20,6 +20,9 @@ public:
     /// All instruments are at their range along one direction: none is faulty, and the body's rate is unknown.
     bool is_common() const { return common_; }
 
+    /// At their range in this frame, borne out, along a direction in which others are not: what they measure is less than the rate.
+    InstrumentSet limited() const { return limited_; }
+
     void reset();
 
 private:
@@ -28,6 +31,7 @@ private:
     const geometry::SensorCluster& cluster_;
     const geometry::Axes& axes_;
     std::array<unsigned, component_count> blind_frames_{};
+    InstrumentSet limited_;
     bool common_ = false;
 };
 

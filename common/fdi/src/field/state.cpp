@@ -54,6 +54,7 @@ void FieldDetector::State::reset()
     ages_.fill(0);
     accusations_.reset();
     degraded_.fill({});
+    limited_.fill({});
     disturbance_ = 0;
     certainty_ = 0;
     disagreement_until_ = 0;
@@ -209,7 +210,7 @@ void FieldDetector::State::compare()
     const InstrumentSet compared = comparable();
     const InstrumentSet present = compared & now.present;
     if (present.size() < 2) return;
-    if (rules_.saturation) saturation_.update(now.frame, compared, now.consensus);
+    if (rules_.saturation) limit();
 
     field::Comparison::Input input{.rates = now.rates, .compared = compared, .present = present, .learns = may_learn()};
     for (std::size_t c = 0; c < component_count; ++c) input.blind[c] = saturation_.is_common() || saturation_.blinds(c);

@@ -43,6 +43,13 @@ private:
         std::uint64_t until = 0;
     };
 
+    /// An instrument that was at its range while others were not: since which sequence, and until which frame count it is left out.
+    struct Limited {
+        std::uint64_t onset = never;
+        std::uint64_t until = 0;
+        AxisMask axes = 0;  ///< those that were at their range
+    };
+
     void advance(const field::Frame& frame);
     void start_with(const field::Frame& frame);
     InstrumentSet comparable() const;
@@ -58,6 +65,8 @@ private:
     void follow_fast_lane();
     void leave_out(std::size_t m, std::uint64_t onset, std::uint64_t frames, const field::Blame& blame);
     bool is_left_out(std::size_t m) const { return accusations_.left_out(m, frames_); }
+    void limit();
+    bool is_limited(std::size_t m) const { return frames_ > 0 && frames_ <= limited_[m].until; }
     std::uint64_t onset_of(std::size_t m, std::size_t window) const;
     std::uint64_t frames_in(double seconds) const;
     void diagnose();
@@ -67,6 +76,7 @@ private:
     std::uint64_t begin_of(std::size_t window) const;
     std::size_t oldest_kept() const;
     void report(const Measurement& measurement, Assessment& assessment) const;
+    void report_limited(Assessment& assessment) const;
     void report_degraded(Assessment& assessment) const;
     void report_residuals(const Measurement& measurement, Assessment& assessment) const;
     AxisMask axes_of(InstrumentSet instruments) const;
@@ -99,6 +109,7 @@ private:
     std::array<std::uint64_t, field::ring_length> sequences_{};  ///< ring, of the frames compared
     field::Accusations accusations_;
     std::array<Degraded, field::max_instruments> degraded_{};
+    std::array<Limited, field::max_instruments> limited_{};
     double disturbance_ = 0;
     double certainty_ = 0;             ///< the largest of the newest frame
     double largest_lasting_ = 0;

@@ -61,6 +61,20 @@ void FieldDetector::State::leave_out(std::size_t m, std::uint64_t onset, std::ui
     if (erratic && mount_ == Mount::board) name(m, onset, {blame.component, Diagnosis::erratic});
 }
 
+/// An instrument at its range is sound, and still of no use to the attitude while others measure more. The frame before may have ended there.
+void FieldDetector::State::limit()
+{
+    const Pending& now = pending_[1];
+    saturation_.update(now.frame, comparable(), now.consensus);
+    for (std::size_t m = 0; m < array_.size(); ++m) {
+        if (!saturation_.limited().has(m)) continue;
+        Limited& limited = limited_[m];
+        if (!is_limited(m)) limited = {pending_[0].frame.sequence, 0, 0};
+        limited.until = frames_ + 1 + frames_in(field::Accusations::calm_s);
+        limited.axes |= now.frame.near_range & array_[m].mask;
+    }
+}
+
 void FieldDetector::State::follow_fast_lane()
 {
     const InstrumentSet compared = comparable();

@@ -26,6 +26,7 @@ void FieldDetector::State::report(const Measurement& measurement, Assessment& as
         assessment.provisional |= array_[m].mask;
         assessment.provisional_from = std::min(assessment.provisional_from, accusations_.onset(m));
     }
+    report_limited(assessment);
     if (assessment.outcome == Outcome::healthy && assessment.provisional != 0) {
         assessment.outcome = Outcome::suspect;
         assessment.isolated = assessment.provisional;
@@ -42,6 +43,24 @@ void FieldDetector::State::report(const Measurement& measurement, Assessment& as
         if (diagnostics_.accused(cluster_.instrument[axis])) assessment.diagnosis[axis] = diagnostics_.of(axis);
     report_degraded(assessment);
     report_residuals(measurement, assessment);
+}
+
+/// Somebody always stays in use.
+void FieldDetector::State::report_limited(Assessment& assessment) const
+{
+    const InstrumentSet compared = comparable();
+    AxisMask left_out = 0;
+    std::uint64_t onset = never;
+    for (std::size_t m = 0; m < array_.size(); ++m) {
+        if (!is_limited(m) || !compared.has(m)) continue;
+        left_out |= array_[m].mask;
+        onset = std::min(onset, limited_[m].onset);
+    }
+    if (left_out == 0 || (axes_of(compared) & ~(left_out | assessment.provisional)) == 0) return;
+    assessment.provisional |= left_out;
+    assessment.provisional_from = std::min(assessment.provisional_from, onset);
+    for (std::size_t axis = 0; axis < cluster_.size(); ++axis)
+        if (has_axis(left_out & limited_[cluster_.instrument[axis]].axes, axis)) assessment.diagnosis[axis].kind = Diagnosis::saturated;
 }
 
 void FieldDetector::State::report_degraded(Assessment& assessment) const
