@@ -23,7 +23,7 @@ def made(kind, megabytes, folder):
 
 
 def measured(file):
-    """Wall time [s], peak memory [MB] and the sentence of one diagnosis."""
+    """Wall time and processor time [s], peak memory [MB] and the sentence of one diagnosis."""
     begin = time.monotonic()
     process = subprocess.Popen([BIN / "quorient", "diagnose", file], stdout=subprocess.PIPE, text=True)
     sentence = process.stdout.readline().strip()
@@ -32,19 +32,20 @@ def measured(file):
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode != 0:
         sys.exit(f"{file}: exit code {process.returncode}")
-    return time.monotonic() - begin, usage.ru_maxrss / 1024, sentence
+    return time.monotonic() - begin, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024, sentence
 
 
 def main():
     if len(sys.argv) < 3:
         sys.exit(__doc__)
     megabytes, folder = int(sys.argv[1]), pathlib.Path(sys.argv[2])
-    print("| log | MB | diagnose, s | MB/s | peak memory, MB | sentence |\n|---|---|---|---|---|---|")
+    print("| log | MB | diagnose, s | MB/s | processor, s | MB per processor second | peak memory, MB | sentence |\n" + "|---" * 8 + "|")
     for kind in sys.argv[3:] or KINDS:
         file = made(kind, megabytes, folder)
         size = file.stat().st_size / (1 << 20)
-        seconds, memory, sentence = measured(file)
-        print(f"| {kind} | {size:.0f} | {seconds:.1f} | {size / seconds:.0f} | {memory:.0f} | {sentence} |", flush=True)
+        seconds, processor_s, memory, sentence = measured(file)
+        speeds = f"{seconds:.1f} | {size / seconds:.0f} | {processor_s:.1f} | {size / processor_s:.0f}"
+        print(f"| {kind} | {size:.0f} | {speeds} | {memory:.0f} | {sentence} |", flush=True)
 
 
 if __name__ == "__main__":

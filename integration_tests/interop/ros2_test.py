@@ -1,4 +1,5 @@
 """ROS 2 on the wire, with plain DDS nodes in ROS 2's place: they receive what our voters write, and what their IMUs write is integrated."""
+import json
 import math
 import re
 import shutil
@@ -284,6 +285,20 @@ class Uncalibrated(Ros2Test):
         error = angle(last["attitude"], attitude_after((last["sample_time_ns"] - self.turns_ns) * 1e-9))
         # With the mean of the biases left in, 0.2 to 0.5 deg/s, it would be 8 deg and more.
         self.assertLess(math.degrees(error), 0.3)
+
+    def test_a_calibration_of_the_running_system_finds_the_raw_biases(self):
+        self.start_biased()
+        cluster = self.run_directory / "cluster.yaml"
+        live = self.run_program(
+            "quorient", "calibrate", "--live", self.system, "--domain", self.domain, "--duration", 24, "--json", "--out", cluster, timeout=60
+        )
+        self.assertEqual(live.returncode, 0, live.stderr)
+        axes = json.loads(live.stdout)["axes"]
+        self.assertEqual([axis["instrument"] for axis in axes], ["front"] * 3 + ["middle"] * 3 + ["rear"] * 3)
+        for axis, bias in zip(axes, BIASES_DEG_S):
+            self.assertAlmostEqual(math.degrees(axis["bias_rad_s"]), bias, delta=0.03, msg="of the sensors, not of what the publisher corrected")
+            self.assertAlmostEqual(axis["gain"], 1, delta=0.01)
+        self.assertIn('instrument: "rear"', cluster.read_text())
 
     def test_a_real_fault_of_one_of_them_is_isolated(self):
         self.start_biased()

@@ -1,3 +1,4 @@
+#include "correction.hpp"
 #include "describe.hpp"
 #include "quorient/attitude/levelling.hpp"
 #include "quorient/messages/meaning.hpp"
@@ -20,12 +21,12 @@ namespace quorient::sensor {
 
 namespace {
 
-std::array<double, max_axes> gains(const system::SensorSettings& settings)
-{
-    std::array<double, max_axes> gain;
-    gain.fill(1.0);
-    return settings.source.log->calibration ? settings.source.log->calibration->gain : gain;
-}
+/// A log's axes as they go on the wire, and how its increments become theirs.
+struct DescribedLog {
+    ClusterDescription description;
+    Correction correction = Correction::none();
+    std::string remark{};
+};
 
 /// The log's name, or that of the first of several: its problems are reported by it.
 const std::string& name_of(const system::SensorSettings& settings)
@@ -49,16 +50,17 @@ std::optional<std::string> doubted_rate(double logged_hz, std::optional<double> 
 
 class LogSource final : public FrameSource {
 public:
-    LogSource(recording::MergedLogs logs, const geometry::SensorCluster& cluster, const ClusterDescription& description,
+    LogSource(recording::MergedLogs logs, const geometry::SensorCluster& cluster, const DescribedLog& described,
               const system::SensorSettings& settings)
         : reader_(std::move(logs.reader)),
-          description_(description),
+          description_(described.description),
           faults_(cluster, settings.source.scenario.seed),
-          gain_(gains(settings)),
+          correction_(described.correction),
           from_s_(settings.source.log->from_s),
           to_s_(settings.source.log->to_s.value_or(std::numeric_limits<double>::infinity()))
     {
         if (auto doubt = doubted_rate(1 / reader_->description().interval_s, settings.source.log->stated_rate_hz)) remarks_.push_back(std::move(*doubt));
+        if (!described.remark.empty()) remarks_.push_back(described.remark);
         remarks_.insert(remarks_.end(), logs.remarks.begin(), logs.remarks.end());
     }
 
@@ -117,7 +119,7 @@ private:
         frame_.description_revision = description_.revision;
         frame_.valid_mask = record_.valid_mask;
         for (std::size_t axis = 0; axis < description_.axis_count; ++axis)
-            frame_.increment[axis] = (record_.increment[axis] - description_.bias[axis] * record_.interval_s) / gain_[axis];
+            frame_.increment[axis] = correction_.corrected(axis, record_.increment[axis], record_.interval_s);
         truth_.attitude_known = record_.truth.has_value();
         if (record_.truth) truth_.attitude = *record_.truth;
         const double begin_s = static_cast<double>(record_.time_ns) * 1e-9 - record_.interval_s;
@@ -130,7 +132,7 @@ private:
     ClusterDescription description_;
     simulation::FaultInjector faults_;
     simulation::FrameAccumulator accumulator_;
-    std::array<double, max_axes> gain_;
+    Correction correction_;
     double from_s_;
     double to_s_;
     recording::RecordedFrame record_;
@@ -180,10 +182,11 @@ tl::expected<attitude::Quaternion, std::string> level_at_rest(const system::Sens
 }
 
 /// The log's own geometry with the biases and sigmas of its beginning, or the system file's with its noise.
-tl::expected<ClusterDescription, std::string> describe_log(recording::Reader& reader, const system::SensorSettings& settings,
-                                                           std::uint64_t epoch)
+tl::expected<DescribedLog, std::string> describe_log(recording::Reader& reader, const system::SensorSettings& settings, std::uint64_t epoch)
 {
-    auto description = reader.description();
+    DescribedLog described{.description = reader.description()};
+    auto& description = described.description;
+    const ClusterDescription recorded = description;
     if (settings.cluster) {
         if (settings.cluster->size() != description.axis_count)
             return tl::make_unexpected(fmt::format("{}: has {} axes, the system file's layout {}", name_of(settings),
@@ -195,12 +198,14 @@ tl::expected<ClusterDescription, std::string> describe_log(recording::Reader& re
         if (const auto other = difference(calibration->description, description))
             return tl::make_unexpected(fmt::format("{}: the calibration is of other sensors: {}", name_of(settings), *other));
         description = calibration->description;
+        if (is_corrected(recorded, description)) described.remark = "the recording holds increments that this calibration corrected: they are taken as they are";
+        else described.correction = Correction::of(*calibration);
     }
     std::optional<attitude::Quaternion> levelled;
     if (settings.source.log->rest_s > 0) {
         const auto rest = recording::rest_statistics(reader, settings.source.log->rest_s);
         if (!rest) return tl::make_unexpected(rest.error());
-        description.bias = rest->bias_rad_s;
+        description.bias = described.correction.bias_rad_s = rest->bias_rad_s;
         if (!calibration) description.sigma = rest->sigma_rad;
         if (settings.levelled_heading_rad) {
             const auto attitude = level_at_rest(settings, *rest, description);
@@ -215,7 +220,7 @@ tl::expected<ClusterDescription, std::string> describe_log(recording::Reader& re
     if (levelled) state_attitude(description, attitude::to_array(*levelled), InitialAttitude::measured);
     if (settings.initial_attitude) state_attitude(description, *settings.initial_attitude, InitialAttitude::stated);
     copy_text(settings.unit_name, description.name);
-    return description;
+    return described;
 }
 
 /// Where a log with truth begins: its first truth is that at the *end* of the first interval, so the first rotation is taken back.
@@ -235,19 +240,20 @@ tl::expected<std::unique_ptr<FrameSource>, std::string> make_log_source(const sy
 {
     auto beginning = open(settings, options);
     if (!beginning) return tl::make_unexpected(beginning.error());
-    auto description = describe_log(*beginning->reader, settings, epoch);
-    if (!description) return tl::make_unexpected(description.error());
-    const auto cluster = geometry::make_cluster(*description);
+    auto described = describe_log(*beginning->reader, settings, epoch);
+    if (!described) return tl::make_unexpected(described.error());
+    auto& description = described->description;
+    const auto cluster = geometry::make_cluster(description);
     if (!cluster) return tl::make_unexpected(fmt::format("{}: {}", name_of(settings), cluster.error()));
     auto again = open(settings, options);
     if (!again) return tl::make_unexpected(again.error());
-    if (const auto start = attitude_at_start(*again->reader, *cluster); start && description->initial_attitude_known == 0) {
-        state_attitude(*description, *start, InitialAttitude::measured);
+    if (const auto start = attitude_at_start(*again->reader, *cluster); start && description.initial_attitude_known == 0) {
+        state_attitude(description, *start, InitialAttitude::measured);
     }
 
     auto logs = open(settings, options);
     if (!logs) return tl::make_unexpected(logs.error());
-    auto source = std::make_unique<LogSource>(std::move(*logs), *cluster, *description, settings);
+    auto source = std::make_unique<LogSource>(std::move(*logs), *cluster, *described, settings);
     for (const auto& fault : settings.source.scenario.faults) {
         if (const auto added = source->faults().add(fault); !added) return tl::make_unexpected(added.error());
     }

@@ -10,41 +10,69 @@ using geometry::AxisVector;
 
 constexpr double flicker_floor = 0.664;  // sqrt(2 ln 2 / pi): the flat part of flicker noise lies at this multiple of the instability
 
-/// Angles at the sample times of a segment, beginning with 0.
-std::vector<AxisVector> angles(Samples samples, const Segment& segment)
+/// The angles at the sample times of a segment one after the other, beginning with 0.
+class Angles {
+public:
+    Angles(Samples samples, const Segment& segment)
+        : samples_(samples.subspan(segment.begin, segment.size())), angle_(AxisVector::Zero(samples[segment.begin].rate.size()))
+    {
+    }
+
+    const AxisVector& angle() const { return angle_; }
+
+    void advance()
+    {
+        const Sample sample = samples_[next_++];
+        angle_ += sample.rate * sample.interval_s;
+    }
+
+    void advance(std::size_t count)
+    {
+        for (std::size_t i = 0; i < count; ++i) advance();
+    }
+
+private:
+    Samples samples_;
+    AxisVector angle_;
+    std::size_t next_ = 0;
+};
+
+/// Adds the squared second differences of a segment's angles, m samples apart.
+void add_terms(Samples samples, const Segment& segment, std::size_t m, AllanPoint& point)
 {
-    std::vector<AxisVector> angle{AxisVector::Zero(samples[segment.begin].rate.size())};
-    angle.reserve(segment.size() + 1);
-    for (const Sample& sample : samples.subspan(segment.begin, segment.size()))
-        angle.emplace_back(angle.back() + sample.rate * sample.interval_s);
-    return angle;
+    if (segment.size() < 2 * m) return;
+    Angles end(samples, segment);
+    end.advance(2 * m);
+    Angles middle(samples, segment);
+    middle.advance(m);
+    Angles begin(samples, segment);
+    for (std::size_t last = 2 * m;; ++last) {
+        point.deviation_rad_s += (end.angle() - 2.0 * middle.angle() + begin.angle()).cwiseAbs2();
+        ++point.terms;
+        if (last == segment.size()) return;
+        for (Angles* const angles : {&end, &middle, &begin}) angles->advance();
+    }
 }
 
 }  // namespace
 
 std::vector<AllanPoint> allan_deviation(Samples samples, const std::vector<Segment>& segments)
 {
-    std::vector<std::vector<AxisVector>> angle;
     std::size_t longest = 0;
     double interval_s = 0;
     std::size_t count = 0;
     for (const Segment& segment : segments) {
-        angle.push_back(angles(samples, segment));
         longest = std::max(longest, segment.size());
         for (const Sample& sample : samples.subspan(segment.begin, segment.size())) interval_s += sample.interval_s;
         count += segment.size();
     }
     interval_s /= static_cast<double>(count);
+    const Eigen::Index axes = samples[segments.front().begin].rate.size();
 
     std::vector<AllanPoint> points;
     for (std::size_t m = 1; 3 * m <= longest; m *= 2) {
-        AllanPoint point{static_cast<double>(m) * interval_s, AxisVector::Zero(angle.front().front().size()), 0};
-        for (const auto& theta : angle) {
-            for (std::size_t k = 0; k + 2 * m < theta.size(); ++k) {
-                point.deviation_rad_s += (theta[k + 2 * m] - 2.0 * theta[k + m] + theta[k]).cwiseAbs2();
-                ++point.terms;
-            }
-        }
+        AllanPoint point{static_cast<double>(m) * interval_s, AxisVector::Zero(axes), 0};
+        for (const Segment& segment : segments) add_terms(samples, segment, m, point);
         point.deviation_rad_s = (point.deviation_rad_s / (2.0 * static_cast<double>(point.terms))).cwiseSqrt() / point.tau_s;
         points.push_back(point);
     }

@@ -10,7 +10,6 @@ namespace quorient::calibration {
 namespace {
 
 using geometry::AxisMatrix;
-using geometry::AxisVector;
 
 constexpr double least_contrast = 5.0;    // between the weakest motion and the strongest disagreement, both as rms rates
 constexpr double nominal_enough = 0.175;  // [rad] 10 deg: no assembly error is larger, no deliberate mounting smaller
@@ -23,22 +22,18 @@ std::vector<std::vector<Eigen::Index>> rows_of_instruments(const std::vector<std
     return rows;
 }
 
-/// Body rates as one instrument alone sees them, a row per sample; nothing if its axes do not span the space.
-std::optional<Eigen::MatrixX3d> rates_of(const std::vector<AxisVector>& rates, const geometry::Axes& nominal,
-                                         const std::vector<Eigen::Index>& rows)
+/// One instrument's own body rates are this times the rates of its axes; nothing if they do not span the space.
+std::optional<Eigen::Matrix3Xd> body_from_axes(const geometry::Axes& nominal, const std::vector<Eigen::Index>& rows)
 {
     const Eigen::MatrixX3d axes = nominal(rows, Eigen::all);
     const Eigen::ColPivHouseholderQR<Eigen::MatrixX3d> solver(axes);
     if (solver.rank() < 3) return std::nullopt;
-    Eigen::MatrixX3d body(static_cast<Eigen::Index>(rates.size()), 3);
-    for (std::size_t i = 0; i < rates.size(); ++i) body.row(static_cast<Eigen::Index>(i)) = solver.solve(Eigen::VectorXd(rates[i](rows)));
-    return body;
+    return solver.solve(Eigen::MatrixXd::Identity(axes.rows(), axes.rows()));
 }
 
-/// The rotation that takes the rows of `own` closest to those of `reference`.
-Eigen::Matrix3d closest_rotation(const Eigen::MatrixX3d& own, const Eigen::MatrixX3d& reference)
+/// The rotation that the profile matrix, the sum of reference x own', is closest to.
+Eigen::Matrix3d closest_rotation(const Eigen::Matrix3d& profile)
 {
-    const Eigen::Matrix3d profile = reference.transpose() * own;
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(profile, Eigen::ComputeFullU | Eigen::ComputeFullV);
     Eigen::Matrix3d u = svd.matrixU();
     if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;  // the nearest rotation, not the nearest reflection
@@ -47,15 +42,13 @@ Eigen::Matrix3d closest_rotation(const Eigen::MatrixX3d& own, const Eigen::Matri
 
 }  // namespace
 
-tl::expected<AxesFit, std::string> fit_axes(const std::vector<AxisVector>& unbiased_rates, const geometry::Axes& nominal)
+tl::expected<AxesFit, std::string> fit_axes(const RateMoment& motion, const geometry::Axes& nominal)
 {
     const Eigen::Index n = nominal.rows();
     if (n < 4) return tl::unexpected(fmt::format("{} axes have no redundancy to compare each other by", n));
-    if (unbiased_rates.empty()) return tl::unexpected(std::string("no sample of motion below saturation"));
+    if (motion.samples() == 0) return tl::unexpected(std::string("no sample of motion below saturation"));
 
-    AxisMatrix moment = AxisMatrix::Zero(n, n);
-    for (const auto& rate : unbiased_rates) moment += rate * rate.transpose();
-    moment /= static_cast<double>(unbiased_rates.size());
+    const AxisMatrix moment = motion.sum() / static_cast<double>(motion.samples());
     const Eigen::SelfAdjointEigenSolver<AxisMatrix> solver(moment);  // eigenvalues ascend
     const double weakest_motion = std::sqrt(std::max(0.0, solver.eigenvalues()(n - 3)));
     const double disagreement = std::sqrt(std::max(0.0, solver.eigenvalues()(n - 4)));
@@ -67,7 +60,7 @@ tl::expected<AxesFit, std::string> fit_axes(const std::vector<AxisVector>& unbia
     const geometry::Axes basis = solver.eigenvectors().rightCols<3>();
     const geometry::Axes fitted = basis * (basis.transpose() * nominal);
     AxesFit fit;
-    fit.samples = unbiased_rates.size();
+    fit.samples = motion.samples();
     const Eigen::VectorXd length = fitted.rowwise().norm();
     fit.axes = fitted.array().colwise() / length.array();
     fit.gain = length / length.mean();
@@ -87,14 +80,15 @@ geometry::Axes turned(const geometry::Axes& nominal, const std::vector<std::size
     return axes;
 }
 
-geometry::Axes mounted(const std::vector<AxisVector>& unbiased_rates, const geometry::Axes& nominal,
-                       const std::vector<std::size_t>& instrument)
+geometry::Axes mounted(const RateMoment& motion, const geometry::Axes& nominal, const std::vector<std::size_t>& instrument)
 {
     const auto rows = rows_of_instruments(instrument);
-    const auto first = rates_of(unbiased_rates, nominal, rows.front());
+    const auto first = body_from_axes(nominal, rows.front());
     std::vector<Eigen::Matrix3d> to_first(rows.size(), Eigen::Matrix3d::Identity());
-    for (std::size_t i = 1; i < rows.size() && first; ++i)
-        if (const auto own = rates_of(unbiased_rates, nominal, rows[i])) to_first[i] = closest_rotation(*own, *first);
+    for (std::size_t i = 1; i < rows.size() && first; ++i) {
+        const auto own = body_from_axes(nominal, rows[i]);
+        if (own) to_first[i] = closest_rotation(*first * motion.sum()(rows.front(), rows[i]) * own->transpose());
+    }
     return turned(nominal, instrument, to_first);
 }
 

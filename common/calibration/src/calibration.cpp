@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <Eigen/Dense>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace quorient::calibration {
@@ -17,6 +18,7 @@ constexpr std::size_t fewest_at_limit = 5;     // an extreme value that occurs s
 constexpr double limit_deviations = 50.0;      // noise alone never repeats an extreme this far out
 constexpr double near_limit = 0.975;           // share of the limit from which a MEMS gyro is no longer linear (1950 of 2000 deg/s)
 constexpr double vibration_window_s = 0.25;    // long against the vibration of rotors, short against a manoeuvre
+constexpr std::size_t most_blocks = 200'000;
 constexpr std::size_t frames_after_limit = 3;  // its filter remembers the clipping for so long
 
 std::size_t index(Eigen::Index axis)
@@ -46,15 +48,17 @@ struct Limits {
 Limits saturation_limits(Samples samples, const RestFigures& rest)
 {
     const Eigen::Index n = rest.bias_rad_s.size();
+    std::array<Extreme, max_axes> up;
+    std::array<Extreme, max_axes> down;
+    for (const Sample& sample : samples)
+        for (Eigen::Index axis = 0; sample.complete && axis < n; ++axis)
+            (sample.rate(axis) > 0 ? up : down)[index(axis)].add(sample.rate(axis));
     Limits limits{AxisVector::Zero(n), AxisVector::Zero(n)};
     for (Eigen::Index axis = 0; axis < n; ++axis) {
-        Extreme up;
-        Extreme down;
-        for (const Sample& sample : samples)
-            if (sample.complete) (sample.rate(axis) > 0 ? up : down).add(sample.rate(axis));
         const double least = limit_deviations * rest.deviation_rad_s(axis);
-        if (up.times >= fewest_at_limit && up.magnitude > least) limits.highest(axis) = up.magnitude;
-        if (down.times >= fewest_at_limit && down.magnitude > least) limits.lowest(axis) = down.magnitude;
+        const auto reached = [least](const Extreme& extreme) { return extreme.times >= fewest_at_limit && extreme.magnitude > least; };
+        if (reached(up[index(axis)])) limits.highest(axis) = up[index(axis)].magnitude;
+        if (reached(down[index(axis)])) limits.lowest(axis) = down[index(axis)].magnitude;
     }
     return limits;
 }
@@ -71,15 +75,16 @@ std::vector<bool> usable_samples(Samples samples, const Limits& limits, const Cl
     std::vector<bool> usable(samples.size(), true);
     std::size_t clean_from = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
+        const Sample sample = samples[i];
         for (Eigen::Index axis = 0; axis < limits.highest.size(); ++axis) {
-            const double size = std::abs(samples[i].rate(axis));
+            const double size = std::abs(sample.rate(axis));
             const double limit = limit_of(limits, axis, nominal.range[index(axis)]);
             if (limit <= 0 || size < near_limit * limit) continue;
             clean_from = i + frames_after_limit + 1;
-            const double end = samples[i].rate(axis) > 0 ? limits.highest(axis) : limits.lowest(axis);
+            const double end = sample.rate(axis) > 0 ? limits.highest(axis) : limits.lowest(axis);
             if (end > 0 && size >= end * (1 - 1e-9)) ++result.saturated[index(axis)];
         }
-        usable[i] = samples[i].complete && i >= clean_from;
+        usable[i] = sample.complete && i >= clean_from;
     }
     return usable;
 }
@@ -87,15 +92,14 @@ std::vector<bool> usable_samples(Samples samples, const Limits& limits, const Cl
 std::string constant_axis(Samples samples)
 {
     if (samples.empty()) return "the log has no frame";
-    const AxisVector& first = samples.front().rate;
-    for (Eigen::Index axis = 0; axis < first.size(); ++axis) {
-        const auto changes = [&](const Sample& sample) {
-            return std::abs(sample.rate(axis) - first(axis)) > 1e-12 * std::abs(first(axis));
-        };
-        if (std::none_of(samples.begin(), samples.end(), changes))
-            return fmt::format("axis {} is constant over the whole log: it is dead, or the log is", axis);
+    const AxisVector first = samples.front().rate;
+    AxisMask changed = 0;
+    for (const Sample& sample : samples) {
+        for (Eigen::Index axis = 0; axis < first.size(); ++axis)
+            if (std::abs(sample.rate(axis) - first(axis)) > 1e-12 * std::abs(first(axis))) changed |= axis_bit(index(axis));
+        if (changed == all_axes(index(first.size()))) return {};
     }
-    return {};
+    return fmt::format("axis {} is constant over the whole log: it is dead, or the log is", std::countr_one(changed));
 }
 
 void note_rest(Samples samples, Calibration& result)
@@ -128,8 +132,9 @@ AxisVector of_axes(const AxisVector& values, const std::vector<Eigen::Index>& ax
 }
 
 /// Without rest: the part of the means that no rotation explains, and the standard deviation of such parts.
-/// @param sound  the axes of the fit; the others' figures stay
-void keep_disagreement(const AxesFit& fit, const std::vector<AxisVector>& rates, const std::vector<bool>& usable,
+/// @param rate_of  of the sound axes, without bias
+/// @param sound    the axes of the fit; the others' figures stay
+void keep_disagreement(const AxesFit& fit, Samples samples, const RateOf& rate_of, const std::vector<bool>& usable,
                        const std::vector<Eigen::Index>& sound, RestFigures& figures)
 {
     const geometry::Axes h = fit.axes.array().colwise() * fit.gain.array();
@@ -137,9 +142,9 @@ void keep_disagreement(const AxesFit& fit, const std::vector<AxisVector>& rates,
     const AxisVector bias = residual * of_axes(figures.bias_rad_s, sound);
     AxisVector squares = AxisVector::Zero(h.rows());
     double count = 0;
-    for (std::size_t i = 0; i < rates.size(); ++i) {
+    for (std::size_t i = 0; i < samples.size(); ++i) {
         if (!usable[i]) continue;
-        squares += AxisVector(residual * rates[i]).cwiseAbs2();
+        squares += AxisVector(residual * rate_of(samples[i])).cwiseAbs2();
         ++count;
     }
     const AxisVector share = residual.diagonal();
@@ -151,20 +156,20 @@ void keep_disagreement(const AxesFit& fit, const std::vector<AxisVector>& rates,
 }
 
 /// Means over blocks of usable samples in a row: manoeuvres stay, vibration (which each sensor samples at its own time) goes.
-std::vector<AxisVector> block_means(Samples samples, const std::vector<AxisVector>& unbiased, const std::vector<bool>& usable)
+/// Very long logs have longer blocks, so that there are no more than most_blocks.
+std::vector<AxisVector> block_means(Samples samples, const RateOf& rate_of, const std::vector<bool>& usable)
 {
-    const auto length = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(vibration_window_s / samples.front().interval_s)));
+    const auto vibration = static_cast<std::size_t>(std::lround(vibration_window_s / samples.front().interval_s));
+    const std::size_t length = std::max({std::size_t{1}, vibration, samples.size() / most_blocks});
     std::vector<AxisVector> means;
-    AxisVector sum = AxisVector::Zero(unbiased.front().size());
+    AxisVector sum;
     std::size_t count = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        if (count > 0 && !samples[i].follows) count = 0;
-        if (!usable[i]) {
-            count = 0;
-            continue;
-        }
-        if (count == 0) sum = unbiased[i];
-        else sum += unbiased[i];
+        const Sample sample = samples[i];
+        if (!usable[i] || !sample.follows) count = 0;
+        if (!usable[i]) continue;
+        if (count == 0) sum = rate_of(sample);
+        else sum += rate_of(sample);
         if (++count < length) continue;
         means.emplace_back(sum / static_cast<double>(length));
         count = 0;
@@ -172,14 +177,23 @@ std::vector<AxisVector> block_means(Samples samples, const std::vector<AxisVecto
     return means;
 }
 
-/// Rates without bias of the samples that move and are usable.
-std::vector<AxisVector> moving_rates(const std::vector<AxisVector>& unbiased, const std::vector<bool>& usable, double noise_rad_s)
+/// The motion of the samples that move and are usable.
+RateMoment moving_rates(Samples samples, const RateOf& rate_of, const std::vector<bool>& usable, std::size_t axes, double noise_rad_s)
 {
-    std::vector<AxisVector> moving;
-    for (std::size_t i = 0; i < unbiased.size(); ++i) {
-        const double rms = std::sqrt(unbiased[i].squaredNorm() / static_cast<double>(unbiased[i].size()));
-        if (usable[i] && rms > 10.0 * noise_rad_s) moving.push_back(unbiased[i]);
+    RateMoment moving(static_cast<Eigen::Index>(axes));
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (!usable[i]) continue;
+        const AxisVector rate = rate_of(samples[i]);
+        if (std::sqrt(rate.squaredNorm() / static_cast<double>(axes)) > 10.0 * noise_rad_s) moving.add(rate);
     }
+    return moving;
+}
+
+/// The motion of the blocks: without rest nothing says what moves.
+RateMoment block_rates(Samples samples, const RateOf& rate_of, const std::vector<bool>& usable, std::size_t axes)
+{
+    RateMoment moving(static_cast<Eigen::Index>(axes));
+    for (const AxisVector& mean : block_means(samples, rate_of, usable)) moving.add(mean);
     return moving;
 }
 
@@ -212,14 +226,6 @@ void leave_raw(const std::vector<Eigen::Index>& sound, Calibration& result)
     }
 }
 
-std::vector<AxisVector> of_axes(const std::vector<AxisVector>& rates, const std::vector<Eigen::Index>& axes)
-{
-    std::vector<AxisVector> chosen;
-    chosen.reserve(rates.size());
-    for (const AxisVector& rate : rates) chosen.push_back(of_axes(rate, axes));
-    return chosen;
-}
-
 std::vector<Eigen::Index> sound_axes(std::size_t count, AxisMask outside)
 {
     std::vector<Eigen::Index> sound;
@@ -231,10 +237,7 @@ std::vector<Eigen::Index> sound_axes(std::size_t count, AxisMask outside)
 /// Which instruments agree, from their raw rates.
 Consensus compared(Samples samples, const std::vector<bool>& usable, const geometry::SensorCluster& cluster)
 {
-    std::vector<AxisVector> raw;
-    raw.reserve(samples.size());
-    for (const Sample& sample : samples) raw.push_back(sample.rate);
-    return consensus_of(block_means(samples, raw, usable), cluster);
+    return consensus_of(block_means(samples, [](const Sample& sample) { return sample.rate; }, usable), cluster);
 }
 
 /// Figures of the corrected increments: raw minus bias, divided by the gain.
@@ -257,34 +260,34 @@ void fill_cluster(const ClusterDescription& nominal, const Limits& limits, Calib
 }
 
 /// What the nominal axes become before the fit: instruments with frames of their own are turned to the first one's.
-geometry::Axes mounted_axes(const geometry::SensorCluster& cluster, const Consensus& consensus, const std::vector<AxisVector>& moving)
+geometry::Axes mounted_axes(const geometry::SensorCluster& cluster, const Consensus& consensus, const RateMoment& moving)
 {
     if (!consensus.to_first.empty()) return turned(cluster.axes, cluster.instrument, consensus.to_first);
-    return moving.empty() ? cluster.axes : mounted(moving, cluster.axes, cluster.instrument);
+    return moving.samples() == 0 ? cluster.axes : mounted(moving, cluster.axes, cluster.instrument);
 }
 
 /// Axes, gains and motion noise from the sound axes.
-/// @param rates  without bias
 /// @returns why not; the nominal axes stay then.
 tl::expected<void, std::string> fit_motion(Samples samples, const geometry::SensorCluster& cluster, const Consensus& consensus,
-                                           std::vector<AxisVector> rates, const std::vector<bool>& usable, Calibration& result)
+                                           const std::vector<bool>& usable, Calibration& result)
 {
     const auto sound = sound_axes(cluster.size(), consensus.outside_mask);
     const bool rested = !result.rest.empty();
     const double noise_rad_s = std::sqrt(result.at_rest.deviation_rad_s.squaredNorm() / static_cast<double>(cluster.size()));
-    rates = of_axes(rates, sound);
-    const auto moving = rested ? moving_rates(rates, usable, noise_rad_s) : block_means(samples, rates, usable);
+    const RateOf unbiased = [&sound, bias = result.at_rest.bias_rad_s](const Sample& sample) { return of_axes(sample.rate - bias, sound); };
+    const RateMoment moving = rested ? moving_rates(samples, unbiased, usable, sound.size(), noise_rad_s)
+                                     : block_rates(samples, unbiased, usable, sound.size());
     if (!consensus.ambiguous.empty()) return tl::unexpected(consensus.ambiguous);
     const geometry::Axes axes = mounted_axes(cluster, consensus, moving);
     geometry::Axes nominal(static_cast<Eigen::Index>(sound.size()), 3);
     for (std::size_t i = 0; i < sound.size(); ++i) nominal.row(static_cast<Eigen::Index>(i)) = axes.row(sound[i]);
     const auto fit = fit_axes(moving, nominal);
     if (!fit) return tl::unexpected(fit.error());
-    if (!rested) keep_disagreement(*fit, rates, usable, sound, result.at_rest);
+    if (!rested) keep_disagreement(*fit, samples, unbiased, usable, sound, result.at_rest);
     take_axes(*fit, axes, sound, result);
-    for (AxisVector& rate : rates) rate = rate.cwiseQuotient(fit->gain).eval();
+    const RateOf corrected = [&](const Sample& sample) -> AxisVector { return unbiased(sample).cwiseQuotient(fit->gain); };
     const AxisVector deviation = of_axes(result.at_rest.deviation_rad_s, sound).cwiseQuotient(fit->gain);
-    result.motion = motion_figures(samples, rates, usable, fit->axes, deviation);
+    result.motion = motion_figures(samples, corrected, usable, fit->axes, deviation);
     result.cluster.jitter_along_s = result.motion->noise.along_s;
     result.cluster.jitter_across_s = result.motion->noise.across_s;
     return {};
@@ -305,15 +308,12 @@ tl::expected<Calibration, std::string> calibrate(Samples samples, const ClusterD
 
     const Limits limits = saturation_limits(samples, result.at_rest);
     const auto usable = usable_samples(samples, limits, nominal, result);
-    std::vector<AxisVector> rates;
-    rates.reserve(samples.size());
-    for (const Sample& sample : samples) rates.emplace_back(sample.rate - result.at_rest.bias_rad_s);
 
     result.cluster.description = nominal;
     result.cluster.gain.fill(1.0);
     const Consensus consensus = compared(samples, usable, *cluster);
     result.outside = consensus.outside;
-    const auto fitted = fit_motion(samples, *cluster, consensus, std::move(rates), usable, result);
+    const auto fitted = fit_motion(samples, *cluster, consensus, usable, result);
     if (!fitted && !rested)
         return tl::unexpected(
             fmt::format("no resting segment of {} s (standard deviation below {} rad/s), and without one the axes must show the "

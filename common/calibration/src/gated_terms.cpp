@@ -11,6 +11,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <queue>
 #include <vector>
 
 namespace quorient::calibration {
@@ -41,9 +42,30 @@ fdi::MotionNoise noise_of(const Logs& logs, double bias_floor_rad_s)
             .bias_floor_rad_s = bias_floor_rad_s};
 }
 
+/// The largest of many values, and how many there were.
+class Largest {
+public:
+    void add(double value)
+    {
+        ++count_;
+        if (largest_.size() < order) largest_.push(value);
+        else if (value > largest_.top()) {
+            largest_.pop();
+            largest_.push(value);
+        }
+    }
+
+    std::size_t count() const { return count_; }
+    double tenth() const { return largest_.top(); }
+
+private:
+    std::priority_queue<double, std::vector<double>, std::greater<>> largest_;  ///< the smallest on top
+    std::size_t count_ = 0;
+};
+
 /// What one length of windows shows.
 struct Shown {
-    std::vector<double> chi_square{};  ///< three degrees of freedom; windows overlap by half
+    Largest chi_square{};  ///< three degrees of freedom; windows overlap by half
     double log_step = 0;               ///< sum of logarithms, over axes and windows end to end
     double steps = 0;
 };
@@ -92,7 +114,7 @@ private:
         for (std::size_t m = 0; m < sums.array().size(); ++m) {
             if (!sums.array().compared(m)) continue;
             const auto [u, q] = fit.contradiction(m);
-            shown.chi_square.push_back(u.dot(q.inverse() * u));
+            shown.chi_square.add(u.dot(q.inverse() * u));
             const auto& instrument = sums.array()[m];
             for (std::size_t i = 0; with_steps && i < instrument.size; ++i) {
                 const Eigen::Vector3d direction = fit.weight * instrument.body_from_axes.col(static_cast<Eigen::Index>(i)) * interval_s;
@@ -128,12 +150,10 @@ private:
             }
         Place place{.logs = logs, .excess = -std::numeric_limits<double>::infinity()};
         double lengths = 0;
-        for (Shown& window : shown) {
-            if (window.chi_square.size() < least_values || window.steps == 0) continue;
-            const auto tenth = window.chi_square.begin() + static_cast<std::ptrdiff_t>(order - 1);
-            std::nth_element(window.chi_square.begin(), tenth, window.chi_square.end(), std::greater<>());
-            const double tail = (static_cast<double>(order) - 0.5) / static_cast<double>(window.chi_square.size());
-            place.excess = std::max(place.excess, std::log(*tenth / fdi::chi_square_quantile(3, tail)) / 2);
+        for (const Shown& window : shown) {
+            if (window.chi_square.count() < least_values || window.steps == 0) continue;
+            const double tail = (static_cast<double>(order) - 0.5) / static_cast<double>(window.chi_square.count());
+            place.excess = std::max(place.excess, std::log(window.chi_square.tenth() / fdi::chi_square_quantile(3, tail)) / 2);
             place.step += window.log_step / window.steps;
             ++lengths;
         }

@@ -39,21 +39,40 @@ std::vector<Segment> stretches_of(const std::vector<Segment>& rest, Samples samp
     return stretches;
 }
 
-/// The samples of these segments, in order. A segment that does not adjoin the previous one is marked as not following.
-std::vector<Sample> joined(Samples samples, std::vector<Segment> segments)
-{
-    std::sort(segments.begin(), segments.end(), [](const Segment& one, const Segment& two) { return one.begin < two.begin; });
-    std::vector<Sample> result;
-    std::size_t end = 0;
-    for (const Segment& segment : segments) {
-        const std::size_t first = result.size();
-        result.insert(result.end(), samples.begin() + static_cast<std::ptrdiff_t>(segment.begin),
-                      samples.begin() + static_cast<std::ptrdiff_t>(segment.end));
-        if (segment.begin != end) result[first].follows = false;
-        end = segment.end;
+/// The samples of some segments as if they were one recording; nothing follows across a joint.
+class Joined final : public SampleSource {
+public:
+    Joined(Samples samples, std::vector<Segment> segments) : samples_(samples), segments_(std::move(segments))
+    {
+        std::ranges::sort(segments_, {}, &Segment::begin);
+        std::size_t end = 0;  // where the segment before ended
+        for (const Segment& segment : segments_) {
+            begins_.push_back(size_);
+            follows_.push_back(segment.begin == end);
+            size_ += segment.size();
+            end = segment.end;
+        }
     }
-    return result;
-}
+
+    std::size_t size() const override { return size_; }
+
+    Sample at(std::size_t index) const override
+    {
+        const auto after = std::ranges::upper_bound(begins_, index);
+        const auto place = static_cast<std::size_t>(after - begins_.begin()) - 1;
+        const std::size_t within = index - begins_[place];
+        Sample sample = samples_[segments_[place].begin + within];
+        if (within == 0) sample.follows = sample.follows && follows_[place];
+        return sample;
+    }
+
+private:
+    Samples samples_;
+    std::vector<Segment> segments_;
+    std::vector<std::size_t> begins_;  ///< where each segment begins in the joined recording
+    std::vector<bool> follows_;        ///< each segment begins where the one before ended
+    std::size_t size_ = 0;
+};
 
 }  // namespace
 
@@ -62,7 +81,7 @@ void HeldOut::play(Samples samples, const Stretch& stretch, const std::function<
     const std::size_t axes = cluster.size();
     std::array<double, max_axes> increment{};
     for (std::size_t i = stretch.lead; i < stretch.end; ++i) {
-        const Sample& sample = samples[i];
+        const Sample sample = samples[i];
         for (std::size_t axis = 0; axis < axes; ++axis) {
             const double rate = sample.rate(static_cast<Eigen::Index>(axis)) - calibration.description.bias[axis];
             increment[axis] = rate * sample.interval_s / calibration.gain[axis];
@@ -86,7 +105,7 @@ std::vector<HeldOut> held_out_halves(Samples samples, const ClusterDescription& 
     for (std::size_t half = 0; half < 2; ++half) {
         auto other = moving[1 - half];
         other.insert(other.end(), resting[1 - half].begin(), resting[1 - half].end());
-        const auto known = joined(samples, other);
+        const Joined known(samples, std::move(other));
         auto calibration = calibrate(known, nominal, settings);
         if (!calibration || !calibration->axes_note.empty() || moving[half].empty()) return {};
         auto cluster = geometry::make_cluster(calibration->cluster.description);

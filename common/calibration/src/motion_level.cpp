@@ -37,7 +37,7 @@ double largest_statistic(Samples samples, const std::vector<bool>& moving, const
     fdi::Assessment assessment;
     double largest = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        const auto& sample = samples[i];
+        const Sample sample = samples[i];
         for (std::size_t axis = 0; axis < axes; ++axis) {
             const double rate = sample.rate(static_cast<Eigen::Index>(axis)) - cluster.description.bias[axis];
             increment[axis] = rate * sample.interval_s / cluster.gain[axis];

@@ -61,69 +61,117 @@ struct BinSums {
 };
 
 /// rms of the mean residual over windows without a break; the windows do not overlap.
-WindowResidual over_windows(std::size_t frames, Samples samples, const std::vector<std::optional<AxisVector>>& residual)
-{
-    WindowResidual result{frames, 0, 0};
-    double squares = 0;
-    for (std::size_t begin = 0; begin + frames <= samples.size();) {
-        AxisVector sum;
-        std::size_t i = begin;
-        for (; i < begin + frames && residual[i] && (i == begin || samples[i].follows); ++i) {
-            if (i == begin) sum = *residual[i];
-            else sum += *residual[i];
-        }
-        if (i == begin + frames) {
-            squares += (sum / static_cast<double>(frames)).squaredNorm() / static_cast<double>(sum.size());
-            ++result.windows;
-        }
-        begin = std::max(i, begin + 1);
+class WindowSums {
+public:
+    explicit WindowSums(std::size_t frames) : result_{frames, 0, 0} {}
+
+    /// The next sample's residual. Nothing: the sample does not count, and breaks a window, as one that does not follow does.
+    void add(const std::optional<AxisVector>& residual, bool follows)
+    {
+        if (!residual || !follows) count_ = 0;
+        if (!residual) return;
+        if (count_ == 0) sum_ = *residual;
+        else sum_ += *residual;
+        if (++count_ < result_.frames) return;
+        squares_ += (sum_ / static_cast<double>(count_)).squaredNorm() / static_cast<double>(sum_.size());
+        ++result_.windows;
+        count_ = 0;
     }
-    if (result.windows > 0) result.residual_rad_s = std::sqrt(squares / static_cast<double>(result.windows));
-    return result;
-}
+
+    WindowResidual result() const
+    {
+        WindowResidual result = result_;
+        if (result.windows > 0) result.residual_rad_s = std::sqrt(squares_ / static_cast<double>(result.windows));
+        return result;
+    }
+
+private:
+    WindowResidual result_;
+    AxisVector sum_;
+    std::size_t count_ = 0;
+    double squares_ = 0;
+};
+
+/// The disagreement at each level of angular acceleration.
+class Bins {
+public:
+    void add(double acceleration, const AxisVector& scaled)
+    {
+        const auto bin = static_cast<std::size_t>(std::log10(acceleration / least_acceleration_rad_s2) * bins_per_decade);
+        if (bin >= bins_.size()) bins_.resize(bin + 1);
+        bins_[bin].acceleration += acceleration;
+        bins_[bin].squares += scaled.squaredNorm() / static_cast<double>(scaled.size());
+        ++bins_[bin].samples;
+    }
+
+    std::vector<DisagreementBin> result() const
+    {
+        std::vector<DisagreementBin> result;
+        for (const BinSums& bin : bins_) {
+            if (bin.samples == 0) continue;
+            const auto count = static_cast<double>(bin.samples);
+            result.push_back({bin.acceleration / count, std::sqrt(bin.squares / count), bin.samples});
+        }
+        return result;
+    }
+
+private:
+    std::vector<BinSums> bins_;
+};
+
+/// A sample between its neighbours, with the rates of all three.
+struct Neighbours {
+    Sample before, here, after;
+    AxisVector rate_before, rate, rate_after;
+
+    void advance(Sample next, const RateOf& rate_of)
+    {
+        before = std::move(here);
+        here = std::move(after);
+        after = std::move(next);
+        rate_before = std::move(rate);
+        rate = std::move(rate_after);
+        rate_after = rate_of(after);
+    }
+};
 
 }  // namespace
 
-MotionFigures motion_figures(Samples samples, const std::vector<AxisVector>& rates, const std::vector<bool>& usable,
-                             const geometry::Axes& axes, const AxisVector& deviation)
+MotionFigures motion_figures(Samples samples, const RateOf& rate_of, const std::vector<bool>& usable, const geometry::Axes& axes,
+                             const AxisVector& deviation)
 {
     const auto project = projectors(axes);
     const AxisVector share = project.residual.diagonal();  // share of an axis's own error that its residual shows
-    std::vector<std::optional<AxisVector>> moving(samples.size());
     NoiseEquations equations;
-    std::vector<BinSums> bins;
+    Bins bins;
+    std::vector<WindowSums> windows(window_frames.begin(), window_frames.end());
     MotionFigures figures;
+    Neighbours near;
+    for (std::size_t i = 0; i < std::min<std::size_t>(2, samples.size()); ++i) near.advance(samples[i], rate_of);
     for (std::size_t i = 1; i + 1 < samples.size(); ++i) {
-        const bool neighbours = usable[i - 1] && usable[i] && usable[i + 1] && samples[i].follows && samples[i + 1].follows;
-        if (!neighbours) continue;
+        near.advance(samples[i + 1], rate_of);
+        std::optional<AxisVector> moving;
+        const bool whole = usable[i - 1] && usable[i] && usable[i + 1] && near.here.follows && near.after.follows;
         const Eigen::Vector3d acceleration =
-            project.body * (rates[i + 1] - rates[i - 1]) / (samples[i].interval_s + samples[i + 1].interval_s);
+            project.body * (near.rate_after - near.rate_before) / (near.here.interval_s + near.after.interval_s);
         const double size = acceleration.norm();
-        if (size < least_acceleration_rad_s2) continue;
-        const AxisVector residual = project.residual * rates[i];
-        const AxisVector scaled = residual.array() / share.array().sqrt();
-        equations.add(scaled.cwiseAbs2() - deviation.cwiseAbs2(), axes, acceleration);
-        moving[i] = scaled;
-        ++figures.noise.samples;
-
-        const auto bin = static_cast<std::size_t>(std::log10(size / least_acceleration_rad_s2) * bins_per_decade);
-        if (bin >= bins.size()) bins.resize(bin + 1);
-        bins[bin].acceleration += size;
-        bins[bin].squares += scaled.squaredNorm() / static_cast<double>(scaled.size());
-        ++bins[bin].samples;
-        figures.noise.largest_acceleration_rad_s2 = std::max(figures.noise.largest_acceleration_rad_s2, size);
+        if (whole && size >= least_acceleration_rad_s2) {
+            const AxisVector residual = project.residual * near.rate;
+            moving = residual.array() / share.array().sqrt();
+            equations.add(moving->cwiseAbs2() - deviation.cwiseAbs2(), axes, acceleration);
+            bins.add(size, *moving);
+            ++figures.noise.samples;
+            figures.noise.largest_acceleration_rad_s2 = std::max(figures.noise.largest_acceleration_rad_s2, size);
+        }
+        for (WindowSums& window : windows) window.add(moving, near.here.follows);
     }
     if (figures.noise.samples > 0) {
         const SamplingJitter solved = equations.solve();
         figures.noise.along_s = solved.along_s;
         figures.noise.across_s = solved.across_s;
     }
-    for (const BinSums& bin : bins) {
-        if (bin.samples == 0) continue;
-        const auto count = static_cast<double>(bin.samples);
-        figures.bins.push_back({bin.acceleration / count, std::sqrt(bin.squares / count), bin.samples});
-    }
-    for (const std::size_t frames : window_frames) figures.windows.push_back(over_windows(frames, samples, moving));
+    figures.bins = bins.result();
+    for (const WindowSums& window : windows) figures.windows.push_back(window.result());
     return figures;
 }
 

@@ -19,8 +19,9 @@ Window judge(Samples samples, Segment place)
 {
     Window window{place, AxisVector::Zero(samples[place.begin].rate.size()), 0, true};
     for (std::size_t i = place.begin; i < place.end; ++i) {
-        window.whole = window.whole && samples[i].complete && (samples[i].follows || i == place.begin);
-        window.mean += samples[i].rate;
+        const Sample sample = samples[i];
+        window.whole = window.whole && sample.complete && (sample.follows || i == place.begin);
+        window.mean += sample.rate;
     }
     window.mean /= static_cast<double>(place.size());
     for (std::size_t i = place.begin; i < place.end; ++i)

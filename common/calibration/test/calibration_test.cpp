@@ -106,7 +106,7 @@ TEST_F(Calibrating, refuses_logs_that_say_nothing)
 TEST_F(Calibrating, without_rest_tells_only_the_biases_that_differ)
 {
     const auto samples = record(truth_, 60, random_);
-    const auto calibration = calibrate(std::span(samples).subspan(2100, 3800), nominal_description());
+    const auto calibration = calibrate(Samples(samples).subspan(2100, 3800), nominal_description());
     ASSERT_TRUE(calibration) << calibration.error();
     EXPECT_TRUE(calibration->rest.empty());
     const geometry::Axes h = truth_.gain.asDiagonal() * truth_.axes;
@@ -137,23 +137,30 @@ TEST_F(Calibrating, refuses_a_triad_that_never_rests)
     for (Sample& sample : samples) sample.rate = sample.rate.head(3).eval();
     ClusterDescription triad = nominal_description();
     triad.axis_count = 3;
-    EXPECT_THAT(calibrate(std::span(samples).subspan(2100, 3800), triad).error(),
+    EXPECT_THAT(calibrate(Samples(samples).subspan(2100, 3800), triad).error(),
                 AllOf(HasSubstr("no resting segment"), HasSubstr("redundancy")));
     EXPECT_TRUE(calibrate(samples, triad));
+}
+
+RateMoment moment_of(const std::vector<geometry::AxisVector>& rates)
+{
+    RateMoment moment(rates.front().size());
+    for (const geometry::AxisVector& rate : rates) moment.add(rate);
+    return moment;
 }
 
 TEST(FitAxes, needs_redundancy_and_motion_about_three_axes)
 {
     std::vector<geometry::AxisVector> flat;
     for (int i = 0; i < 100; ++i) flat.emplace_back(nominal_axes() * Eigen::Vector3d(std::sin(i), std::cos(i), 0));
-    EXPECT_THAT(fit_axes(flat, nominal_axes()).error(), HasSubstr("one body axis"));
-    EXPECT_FALSE(fit_axes({}, nominal_axes()));
+    EXPECT_THAT(fit_axes(moment_of(flat), nominal_axes()).error(), HasSubstr("one body axis"));
+    EXPECT_FALSE(fit_axes(RateMoment(9), nominal_axes()));
     const geometry::Axes triad = nominal_axes().topRows(3);
-    EXPECT_THAT(fit_axes({geometry::AxisVector::Ones(3)}, triad).error(), HasSubstr("redundancy"));
+    EXPECT_THAT(fit_axes(moment_of({geometry::AxisVector::Ones(3)}), triad).error(), HasSubstr("redundancy"));
 
     std::vector<geometry::AxisVector> full;
     for (int i = 0; i < 100; ++i) full.emplace_back(nominal_axes() * Eigen::Vector3d(std::sin(i), std::cos(i), std::sin(3 * i)));
-    EXPECT_TRUE(fit_axes(full, nominal_axes()));
+    EXPECT_TRUE(fit_axes(moment_of(full), nominal_axes()));
 }
 
 }  // namespace

@@ -316,6 +316,27 @@ TEST(CsvLog, says_where_the_user_contradicts_the_header)
     EXPECT_THAT(log.remarks, Contains(HasSubstr("another unit")));
 }
 
+TEST(CsvLog, reads_instruments_whose_columns_name_no_quantity_where_no_other_column_does)
+{
+    const auto two_triads = [](const std::string& names) {
+        std::string text = "time_s," + names + "\n";
+        for (int i = 0; i < 20; ++i) text += std::to_string(1 + 0.01 * i) + ",1,2,3,4,5," + std::to_string(i) + "\n";
+        return text;
+    };
+    const LogOptions deg_s{RateUnit::deg_s, {}, {}};
+    const Samples bare = samples_of(two_triads("imu1_x,imu1_y,imu1_z,imu2_x,imu2_y,imu2_z"), deg_s);
+    EXPECT_THAT(bare.names(), ElementsAre("imu1", "imu2"));
+    ASSERT_EQ(bare.of("imu2").size(), 20U);
+    EXPECT_NEAR(bare.of("imu2")[7].rate_rad_s[2], 7 * degree, 1e-12);
+    EXPECT_THAT(samples_of(two_triads("imu1_gx,imu1_gy,imu1_gz,imu2_gx,imu2_gy,imu2_gz"), deg_s).names(), ElementsAre("imu1", "imu2"));
+    EXPECT_THAT(samples_of(rows(20, "time_s,Sensor 3 X [deg/s],Sensor 3 Y [deg/s],Sensor 3 Z [deg/s]")).names(), ElementsAre("Sensor 3"));
+
+    EXPECT_THAT(samples_of(two_triads("g0x_dps,g0y_dps,g0z_dps,imu1_x,imu1_y,imu1_z")).names(), ElementsAre("g0"))
+        << "where gyros are named, other columns are something else";
+    EXPECT_THAT(refusal_of(rows(20, "time_s,imu1_x [m],imu1_y [m],imu1_z [m]")), HasSubstr("time_s,g0x")) << "a place is no rate";
+    EXPECT_THAT(refusal_of(rows(20, "time_s,target1_x,target1_y,target1_z")), HasSubstr("time_s,g0x"));
+}
+
 TEST(CsvLog, says_what_a_header_must_name)
 {
     EXPECT_THAT(refusal_of("1,2,3,4\n5,6,7,8\n"), AllOf(HasSubstr("log.csv:1:"), HasSubstr("time_s,g0x")));

@@ -19,18 +19,33 @@ Progress::Progress() : terminal_(isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress()
 {
-    if (shown_) fmt::print(stderr, "\r{:{}}\r", "", width + 7);
+    if (shown_ > 0) fmt::print(stderr, "\r{:{}}\r", "", shown_);
 }
 
 void Progress::show(std::size_t done, std::size_t all)
 {
-    if (!terminal_ || all == 0) return;
-    const auto now = Clock::now();
-    if (now - begin_ < patience || now - last_ < refresh) return;
-    last_ = now;
-    shown_ = true;
+    if (all == 0 || !due()) return;
     const std::size_t filled = width * done / all;
-    fmt::print(stderr, "\r[{}{}] {:3d}%", std::string(filled, '='), std::string(width - filled, ' '), 100 * done / all);
+    print(fmt::format("[{}{}] {:3d}% {}", std::string(filled, '='), std::string(width - filled, ' '), 100 * done / all, title_));
+}
+
+void Progress::show(std::size_t done)
+{
+    if (due()) print(fmt::format("{} {}", done, title_));
+}
+
+bool Progress::due()
+{
+    const auto now = Clock::now();
+    if (!terminal_ || now - begin_ < patience || now - last_ < refresh) return false;
+    last_ = now;
+    return true;
+}
+
+void Progress::print(const std::string& line)
+{
+    fmt::print(stderr, "\r{:<{}}", line, shown_);
+    shown_ = line.size();
     std::fflush(stderr);
 }
 

@@ -1,22 +1,11 @@
 #include "frame_store.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-#include <cstdlib>
 #include <cstring>
 
 namespace quorient::cli {
 namespace {
 
 constexpr std::size_t most_in_memory = std::size_t{32} << 20U;
-
-/// A file without a name, in $TMPDIR or /var/tmp: /tmp may be memory. It goes with the process. @returns null where there is no room.
-std::FILE* unnamed_file()
-{
-    const char* chosen = std::getenv("TMPDIR");
-    const int file = ::open(chosen && *chosen ? chosen : "/var/tmp", O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-    return file < 0 ? std::tmpfile() : ::fdopen(file, "w+");
-}
 
 }  // namespace
 
@@ -35,7 +24,7 @@ bool FrameStore::add(const recording::AlignedFrame& frame)
         memory_.insert(memory_.end(), record_.begin(), record_.end());
         return true;
     }
-    if (!file_) file_.reset(unnamed_file());
+    if (!file_) file_ = temporary_file();
     if (!file_ || std::fwrite(record_.data(), record_.size(), 1, file_.get()) != 1) return false;
     ++in_file_;
     return true;

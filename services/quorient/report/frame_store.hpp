@@ -1,10 +1,9 @@
 #pragma once
 
 #include "quorient/recording/resampler.hpp"
+#include "temporary_file.hpp"
 
-#include <cstdio>
 #include <functional>
-#include <memory>
 #include <vector>
 
 namespace quorient::cli {
@@ -34,9 +33,6 @@ private:
         AxisMask clipped_mask;
         std::uint32_t after_gap;
     };
-    struct Closed {
-        void operator()(std::FILE* file) const { std::fclose(file); }
-    };
 
     std::size_t record_size() const { return sizeof(Kept) + 3 * instruments_ * sizeof(float); }
     void unpack(const unsigned char* record, recording::AlignedFrame& frame) const;
@@ -44,7 +40,7 @@ private:
     std::size_t instruments_;
     std::vector<unsigned char> memory_;
     std::vector<unsigned char> record_;  ///< the one in hand
-    std::unique_ptr<std::FILE, Closed> file_;
+    TemporaryFile file_;
     std::uint64_t in_file_ = 0;  ///< frames
 };
 

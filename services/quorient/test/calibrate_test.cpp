@@ -1,4 +1,5 @@
 #include "cli/svg_plot.hpp"
+#include "report/sample_store.hpp"
 #include "run_verb.hpp"
 #include "verbs.hpp"
 
@@ -208,6 +209,39 @@ TEST_F(CalibrateVerb, explains_what_it_cannot_calibrate)
     EXPECT_THAT(run("calibrate " + path("moving.csv") + " --layout cone-4").error, HasSubstr("4 axes"));
     EXPECT_THAT(run("calibrate " + path("none.csv")).error, HasSubstr("none.csv"));
     EXPECT_EQ(run("calibrate " + path("none.csv")).exit_code, 2);
+}
+
+TEST(SampleStore, gives_back_the_same_samples_from_memory_and_from_its_file)
+{
+    constexpr std::size_t axes = 24;
+    constexpr std::size_t count = 200'000;  // 43 MB: the first 32 MB are in memory
+    const auto made = [](std::size_t i) {
+        calibration::Sample sample;
+        sample.time_s = 0.001 * static_cast<double>(i);
+        sample.interval_s = 0.001 + 1e-9 * static_cast<double>(i % 7);
+        sample.rate.resize(axes);
+        for (Eigen::Index axis = 0; axis < sample.rate.size(); ++axis) sample.rate(axis) = std::sin(0.1 * static_cast<double>(i) + static_cast<double>(axis));
+        sample.complete = i % 3 != 0;
+        sample.follows = i % 5 != 0;
+        return sample;
+    };
+    SampleStore store(axes);
+    for (std::size_t i = 0; i < count; ++i) ASSERT_TRUE(store.add(made(i)));
+    ASSERT_TRUE(store.flush());
+    ASSERT_EQ(store.size(), count);
+
+    const auto expect_same = [&](std::size_t i) {
+        const calibration::Sample expected = made(i);
+        const calibration::Sample kept = store.at(i);
+        ASSERT_EQ(kept.time_s, expected.time_s) << i;
+        ASSERT_EQ(kept.interval_s, expected.interval_s) << i;
+        ASSERT_EQ(kept.complete, expected.complete) << i;
+        ASSERT_EQ(kept.follows, expected.follows) << i;
+        ASSERT_EQ(kept.rate, expected.rate) << i;
+    };
+    for (std::size_t i = 0; i < count; ++i) expect_same(i);
+    std::mt19937_64 random(3);
+    for (int i = 0; i < 300; ++i) expect_same(random() % count);
 }
 
 TEST(SvgPlot, leaves_out_what_an_axis_cannot_show)

@@ -6,6 +6,7 @@
 #include "quorient/messages/fields.hpp"
 #include "quorient/messages/meaning.hpp"
 #include "quorient/recording/reader.hpp"
+#include "sources.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -74,6 +75,63 @@ TEST_F(Recording, has_every_sample_in_its_order)
     const auto sequences = sequences_in(path("all.mcap"));
     ASSERT_EQ(sequences.size(), 5000U);
     for (std::uint64_t i = 0; i < 5000; ++i) ASSERT_EQ(sequences[i], i);
+}
+
+/// Three triads as a calibration describes them.
+calibration::CalibratedCluster calibrated_triads()
+{
+    calibration::CalibratedCluster cluster;
+    ClusterDescription& description = cluster.description;
+    description.epoch = description.revision = description.unit = 1;
+    description.kind = octet(SensorKind::gyro);
+    description.interval_s = 0.005;
+    description.axis_count = 9;
+    description.instrument_count = 3;
+    cluster.gain.fill(1);
+    for (std::uint8_t axis = 0; axis < 9; ++axis) {
+        description.axis[axis][axis % 3] = 1;
+        description.instrument[axis] = axis / 3;
+        description.sigma[axis] = 1.2345678901234e-5 + 1e-7 * axis;
+        description.bias[axis] = 0.01;
+        cluster.gain[axis] = 1.02;
+    }
+    return cluster;
+}
+
+/// A recording of these sensors, played with their calibration.
+double first_increment_of_a_replay(const std::string& file, const ClusterDescription& recorded)
+{
+    McapRecording recording(file, false, {});
+    recording.take(bus::topics::cluster, recorded, some_time_ns);
+    for (std::uint64_t i = 0; i < 100; ++i) {
+        SensorFrame frame = frame_of(i);
+        frame.axis_count = 9;
+        frame.valid_mask = 0x1FF;
+        frame.description_revision = 1;
+        frame.increment.fill(0.003);
+        recording.take(bus::topics::frame, frame, some_time_ns);
+    }
+    recording.finish();
+    system::SensorSettings settings;
+    settings.source.log.emplace();
+    settings.source.log->files = {file};
+    settings.source.log->rest_s = 0;
+    settings.source.log->calibration = calibrated_triads();
+    const auto source = sensor::make_source(settings, 1);
+    if (!source) throw std::runtime_error(source.error());
+    SensorFrame frame;
+    TruthState truth;
+    EXPECT_EQ((*source)->advance_to(0, frame, truth), sensor::Advance::frame);
+    return frame.increment[4];
+}
+
+TEST_F(Recording, of_corrected_increments_is_not_corrected_once_more_by_the_same_calibration)
+{
+    const ClusterDescription corrected = calibrated_triads().description;
+    EXPECT_EQ(first_increment_of_a_replay(path("corrected.mcap"), corrected), 0.003);
+    ClusterDescription raw = corrected;
+    raw.sigma.fill(1e-5);
+    EXPECT_NEAR(first_increment_of_a_replay(path("raw.mcap"), raw), (0.003 - 0.01 * 0.005) / 1.02, 1e-15);
 }
 
 TEST_F(Recording, drops_and_counts_what_a_file_that_stands_still_leaves_no_room_for_and_does_not_wait)

@@ -208,11 +208,22 @@ std::optional<Quantity> motion_of(const Words& words)
     return std::nullopt;
 }
 
+/// "imu1_x" names an instrument and an axis, and no quantity.
+bool is_instrument_axis(const Words& words)
+{
+    if (words.size() < 2 || !is_one_of(words.back(), {"x", "y", "z"})) return false;
+    const auto is_instrument = [](const std::string& word) { return is_one_of(word, {"imu", "sensor", "device", "unit", "instance"}); };
+    const auto end = words.end() - 1;
+    return std::any_of(words.begin(), end, is_instrument) &&
+           std::all_of(words.begin(), end, [&](const std::string& word) { return is_instrument(word) || is_digit(word[0]); });
+}
+
 /// @param alone  the name is one word, without an index
 Quantity quantity_of(const Words& words, std::string_view unit, bool alone)
 {
     if (alone && is_one_of(words[0], {"p", "q", "r", "x", "y", "z"}))
         return unit.empty() || unit.ends_with("/s") ? Quantity::rate : Quantity::other;
+    if (is_instrument_axis(words)) return unit.empty() || unit.ends_with("/s") ? Quantity::rate : Quantity::other;
     if (contains(words, {"dt", "interval"})) return Quantity::interval;
     if (const auto motion = motion_of(words)) return *motion;
     if (contains(words, {"nanosec", "nsec", "nsecs"}) || (unit == "ns" && contains(words, {"stamp"}))) return Quantity::time_fraction;
@@ -299,7 +310,7 @@ ColumnName read_column_name(std::string_view header_cell)
     column.quantity = quantity_of(words, column.unit, alone);
     if (column.quantity == Quantity::time) column.rank = rank_of_time(words);
     if (column.quantity == Quantity::rate || column.quantity == Quantity::increment || column.quantity == Quantity::acceleration) {
-        column.bare = alone && words[0].size() == 1 && words[0][0] >= 'x';
+        column.bare = (alone && words[0].size() == 1 && words[0][0] >= 'x') || is_instrument_axis(words);
         column.axis = index ? index : take_axis(words);
         if (!column.axis && column.quantity == Quantity::increment) column.axis = take_index(words);
         if (!column.axis) column.quantity = Quantity::other;
@@ -330,7 +341,7 @@ std::string common_name(const std::array<std::string, 3>& columns)
     if (owner_of(words, Quantity::rate).empty()) return {};
     if (!tail.empty()) return name;
     for (const std::string_view word : {"angular_velocity", "angular velocity", "AngularVelocity", "gyroscope", "Gyroscope", "gyro", "Gyro", "GYRO",
-                                        "Gyr", "gyr", "GYR", "omega"}) {
+                                        "Gyr", "gyr", "GYR", "omega", "_g"}) {
         if (!name.ends_with(word) || name.size() == word.size()) continue;
         return trim(name.substr(0, name.size() - word.size()));
     }

@@ -18,7 +18,7 @@ struct ColumnName {
     std::string unit;                 ///< "rad/s", "deg/s", "ms" …, as spelled here; empty = not named
     std::string unknown_unit;         ///< what stands where a unit is expected, if it is none of a gyro's
     std::string text;                 ///< the name as it stands, without quotes and unit
-    bool bare = false;  ///< x, y or z and no more: a rate only where no other column is one
+    bool bare = false;  ///< x, y or z with no quantity, also of a named instrument: a rate only where no other column is one
     int rank = 0;                     ///< among several columns of time the highest is the best: of the sampling rather than the arrival
 };
 

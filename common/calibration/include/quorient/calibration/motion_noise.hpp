@@ -2,6 +2,7 @@
 
 #include "quorient/calibration/sample.hpp"
 
+#include <functional>
 #include <vector>
 
 namespace quorient::calibration {
@@ -36,9 +37,13 @@ struct MotionFigures {
     std::vector<WindowResidual> windows;
 };
 
-/// @param rates      without bias, divided by the gains: one per sample; where `usable` is false they are passed over.
+/// What a sample's rates are to a fit: without bias, perhaps of some axes only, perhaps divided by the gains.
+using RateOf = std::function<geometry::AxisVector(const Sample&)>;
+
+/// @param rate_of    without bias, divided by the gains
+/// @param usable     one per sample; where it is false the sample is passed over.
 /// @param deviation  standard deviation of one sample at rest, per axis, likewise divided by the gains.
-MotionFigures motion_figures(Samples samples, const std::vector<geometry::AxisVector>& rates, const std::vector<bool>& usable,
-                             const geometry::Axes& axes, const geometry::AxisVector& deviation);
+MotionFigures motion_figures(Samples samples, const RateOf& rate_of, const std::vector<bool>& usable, const geometry::Axes& axes,
+                             const geometry::AxisVector& deviation);
 
 }  // namespace quorient::calibration
