@@ -271,9 +271,13 @@ class Uncalibrated(Ros2Test):
         self.assertEqual(description["revision"], 2, "the frames carry this one alone")
 
     def test_three_sound_imus_keep_all_axes_and_the_attitude_is_true(self):
+        recording = self.run_directory / "run.mcap"
+        recorder = self.start("quorient", "record", recording, "--domain", self.domain)
         self.start_biased()
         self.eventually(lambda: self.turned_for(WATCHED_S), f"{WATCHED_S} s of motion", timeout=60)
         self.all_alive(self.services)
+        recorder.send_signal(signal.SIGINT)
+        self.assertEqual(recorder.wait(20), 0, recorder.stdout.read())
         self.assert_biases_were_learned_first()
         verdicts, voted = self.heard("verdict"), self.heard("voter_output")
         self.assertGreater(len(verdicts), 3 * 200 * WATCHED_S)
@@ -285,6 +289,14 @@ class Uncalibrated(Ros2Test):
         error = angle(last["attitude"], attitude_after((last["sample_time_ns"] - self.turns_ns) * 1e-9))
         # With the mean of the biases left in, 0.2 to 0.5 deg/s, it would be 8 deg and more.
         self.assertLess(math.degrees(error), 0.3)
+        self.assert_it_replays(recording, len(verdicts) / 3)
+
+    def assert_it_replays(self, recording, frames):
+        result = self.run_program("quorient", "replay", recording, "--system", self.system, "--json", timeout=60)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        report = json.loads(result.stdout)
+        self.assertGreater(report["frames"], 0.9 * frames)
+        self.assertEqual(report["isolations"], [])
 
     def test_a_calibration_of_the_running_system_finds_the_raw_biases(self):
         self.start_biased()
@@ -299,6 +311,9 @@ class Uncalibrated(Ros2Test):
             self.assertAlmostEqual(math.degrees(axis["bias_rad_s"]), bias, delta=0.03, msg="of the sensors, not of what the publisher corrected")
             self.assertAlmostEqual(axis["gain"], 1, delta=0.01)
         self.assertIn('instrument: "rear"', cluster.read_text())
+        calibrated = self.write("calibrated.yaml", BIASED.replace("rate_hz: 200", "rate_hz: 200\n  calibration: cluster.yaml"))
+        checked = self.run_program("quorient", "check", calibrated)
+        self.assertEqual(checked.returncode, 0, checked.stderr)
 
     def test_a_real_fault_of_one_of_them_is_isolated(self):
         self.start_biased()

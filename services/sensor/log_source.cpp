@@ -187,13 +187,17 @@ tl::expected<DescribedLog, std::string> describe_log(recording::Reader& reader, 
     DescribedLog described{.description = reader.description()};
     auto& description = described.description;
     const ClusterDescription recorded = description;
+    if (settings.source.log->of_imus) {
+        if (const auto other = difference(describe(*settings.cluster), recorded))
+            return tl::make_unexpected(fmt::format("{}: the system file's IMUs are other sensors: {}", name_of(settings), *other));
+    }
     if (settings.cluster) {
         if (settings.cluster->size() != description.axis_count)
             return tl::make_unexpected(fmt::format("{}: has {} axes, the system file's layout {}", name_of(settings),
                                                    description.axis_count, settings.cluster->size()));
         description = describe(*settings.cluster);
     }
-    const auto& calibration = settings.source.log->calibration;
+    const auto& calibration = settings.source.calibration;
     if (calibration) {
         if (const auto other = difference(calibration->description, description))
             return tl::make_unexpected(fmt::format("{}: the calibration is of other sensors: {}", name_of(settings), *other));

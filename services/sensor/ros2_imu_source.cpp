@@ -17,9 +17,6 @@ namespace {
 /// Discovery takes about a second. A topic that nobody publishes by then is named before five are over.
 constexpr std::int64_t publisher_patience_ns = 3'000'000'000;
 
-/// From so long a rest at the start biases are learned.
-constexpr double wanted_rest_s = 2;
-
 class Ros2ImuSource final : public FrameSource {
 public:
     Ros2ImuSource(const system::SensorSettings& settings, std::uint64_t epoch)
@@ -27,7 +24,7 @@ public:
           faults_(*settings.cluster, settings.source.scenario.seed),
           description_(describe(*settings.cluster)),
           alignment_(settings_, settings.kind, settings.cluster->interval_s),
-          rest_(settings.cluster->instrument, settings.kind == SensorKind::gyro ? wanted_rest_s : 0),
+          rest_(settings.cluster->instrument, settings_.rest_s),
           told_(settings_.imus.size(), ImuAlignment::Fault::none),
           topics_(settings_.imus.size(), Topic::awaited),
           domain_(settings.process.bus.domain)
@@ -35,6 +32,10 @@ public:
         description_.epoch = epoch;
         description_.revision = 1;
         description_.unit = settings.process.node.unit;
+        if (const auto& calibration = settings.source.calibration) {
+            correction_ = Correction::of(*calibration);
+            description_.bias = calibration->description.bias;
+        }
         description_.initial_attitude_known =
             static_cast<std::uint8_t>(settings.initial_attitude ? InitialAttitude::stated : InitialAttitude::unknown);
         if (settings.initial_attitude) description_.initial_attitude = *settings.initial_attitude;

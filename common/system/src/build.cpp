@@ -19,14 +19,14 @@ ProcessSettings process_of(const System& system, const ProcessSettings& settings
     return process;
 }
 
-/// The motion noise that the calibration of the log states.
+/// The motion noise that the calibration of the sensors states.
 void take_calibration(const System& system, fdi::DetectorSettings& method)
 {
-    const auto& log = system.sensor.source.log;
-    if (!log || !log->calibration) return;
+    const auto& calibration = system.sensor.source.calibration;
+    if (!calibration) return;
     method.calibrated = true;
-    if (!method.motion_noise && log->calibration->motion_level > 0) method.motion_noise = log->calibration->motion_level;
-    method.gated_noise = log->calibration->gated;
+    if (!method.motion_noise && calibration->motion_level > 0) method.motion_noise = calibration->motion_level;
+    method.gated_noise = calibration->gated;
 }
 
 void build_detector(DetectorSection& file, const System& system, DetectorProcess& detector)

@@ -1,11 +1,9 @@
 #include "build.hpp"
-#include "sections/ros2.hpp"
+#include "build_imus.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <filesystem>
-#include <set>
 
 namespace quorient::system {
 
@@ -31,20 +29,22 @@ bool needs_rest(const File& file, const System& system)
 void build_log(const File& file, SourceSection& source, System& system, Report& report)
 {
     LogSettings log;
+    if (!source.imus.empty()) {  // a file for ROS 2 that replays its own recording, whose biases are taken out already
+        take_mountings(source, system, report);
+        source.rest_s = 0;
+    }
     if (!source.rest_s) source.rest_s = needs_rest(file, system) ? LogSettings{}.rest_s : 0;
     log.rest_s = *source.rest_s;
     log.from_s = source.from_s;
     log.to_s = source.to_s;
+    log.of_imus = !source.imus.empty();
     for (auto& name : source.files) {
         name = beside(system, name);
         log.files.push_back(name);
     }
-    if (!source.calibration.empty()) {
-        if (system.sensor.cluster) report.at("source.calibration", "states the axes, as unit.layout or unit.axes do: keep one of them");
-        source.calibration = beside(system, source.calibration);
-        if (auto loaded = calibration::load_cluster(source.calibration)) log.calibration = std::move(*loaded);
-        else report.at("source.calibration", loaded.error());
-    }
+    if (!source.calibration.empty() && source.imus.empty() && system.sensor.cluster)
+        report.at("source.calibration", "states the axes, as unit.layout or unit.axes do: keep one of them");
+    take_calibration(source, system, report);
     if (!system.sensor.cluster)
         for (const auto& [key, value] :
              {std::pair{"source.noise_rad", source.scenario.noise_rad}, std::pair{"source.quantum_rad", source.scenario.quantum}})
@@ -53,34 +53,6 @@ void build_log(const File& file, SourceSection& source, System& system, Report& 
                     key,
                     "has no axes to hold for: noise is that of the log at rest, or of the calibration; or state unit.layout or unit.axes");
     system.sensor.source.log = std::move(log);
-}
-
-/// An IMU's axes in the body frame are the columns of its mounting.
-void build_imus(const SourceSection& source, System& system, Report& report)
-{
-    if (system.sensor.cluster) report.at("source.kind", "the IMUs' mountings are the axes: leave unit.layout and unit.axes out");
-    Ros2SourceSettings settings;
-    settings.skew_s = source.skew_s;
-    std::set<std::string> topics;
-    geometry::Axes axes(static_cast<Eigen::Index>(axes_per_imu * source.imus.size()), 3);
-    std::vector<std::size_t> instrument;
-    for (std::size_t i = 0; i < source.imus.size(); ++i) {
-        const auto& imu = source.imus[i];
-        const Eigen::Quaterniond rotation(imu.rotation[0], imu.rotation[1], imu.rotation[2], imu.rotation[3]);
-        settings.imus.push_back({imu.topic, imu.name, rotation.matrix(), Eigen::Vector3d(imu.position_m.data())});
-        axes.middleRows<axes_per_imu>(static_cast<Eigen::Index>(axes_per_imu * i)) = rotation.matrix().transpose();
-        instrument.insert(instrument.end(), axes_per_imu, i);
-        if (!imu.topic.empty() && !topics.insert(imu.topic).second)
-            report.at(fmt::format("source.imus[{}].topic", i), fmt::format("two IMUs have the topic '{}'", imu.topic));
-    }
-    if (!source.imus.empty()) {
-        auto cluster = geometry::make_cluster(axes, instrument);
-        if (!cluster) return report.at("source.imus", cluster.error());
-        for (std::size_t i = 0; i < source.imus.size(); ++i) cluster->instrument_name[i] = source.imus[i].name;
-        cluster->range.setConstant(system.sensor.range);
-        system.sensor.cluster = std::move(*cluster);
-    }
-    system.sensor.source.ros2 = std::move(settings);
 }
 
 void build_simulation(SourceSection& source, System& system, Report& report)
@@ -165,6 +137,7 @@ void build_source(File& file, System& system, Report& report)
             break;
         case Kind::ros2_imu:
             build_imus(source, system, report);
+            take_calibration(source, system, report);
             break;
         case Kind::simulation:
             scenario.quantize = *source.quantize;
@@ -172,8 +145,10 @@ void build_source(File& file, System& system, Report& report)
             break;
     }
     if (auto& cluster = system.sensor.cluster) {
-        cluster->sigma.setConstant(scenario.noise_rad);
-        cluster->quantum.setConstant(scenario.quantum);
+        if (!system.sensor.source.calibration) {
+            cluster->sigma.setConstant(scenario.noise_rad);
+            cluster->quantum.setConstant(scenario.quantum);
+        }
         cluster->interval_s = scenario.interval_s;
         cluster->kind = system.sensor.kind;
         if (source.kind == Kind::ros2_imu) check_faults(source, *cluster, report);

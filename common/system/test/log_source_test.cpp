@@ -66,8 +66,8 @@ TEST_F(LogSource, names_its_files_from_the_folder_of_the_system_file)
     const auto system = loaded("file: [logs/a.csv, b.csv], calibration: cluster.yaml");
     ASSERT_TRUE(system) << system.error();
     EXPECT_THAT(system->sensor.source.log->files, ElementsAre((folder_ / "logs/a.csv").string(), (folder_ / "b.csv").string()));
-    ASSERT_TRUE(system->sensor.source.log->calibration);
-    EXPECT_EQ(system->sensor.source.log->calibration->description.axis_count, 9);
+    ASSERT_TRUE(system->sensor.source.calibration);
+    EXPECT_EQ(system->sensor.source.calibration->description.axis_count, 9);
 }
 
 TEST_F(LogSource, takes_absolute_names_as_they_are)

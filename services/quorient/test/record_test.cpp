@@ -116,7 +116,7 @@ double first_increment_of_a_replay(const std::string& file, const ClusterDescrip
     settings.source.log.emplace();
     settings.source.log->files = {file};
     settings.source.log->rest_s = 0;
-    settings.source.log->calibration = calibrated_triads();
+    settings.source.calibration = calibrated_triads();
     const auto source = sensor::make_source(settings, 1);
     if (!source) throw std::runtime_error(source.error());
     SensorFrame frame;

@@ -22,7 +22,7 @@ constexpr std::int64_t shown_every_ns = 100'000'000;
 /// One unit's frames, in order, as raw samples.
 class Receiver {
 public:
-    explicit Receiver(const system::System& system) : calibration_(system.sensor.source.log ? system.sensor.source.log->calibration : std::nullopt), intake_(system.unit, SensorKind::gyro) {}
+    explicit Receiver(const system::System& system) : calibration_(system.sensor.source.calibration), intake_(system.unit, SensorKind::gyro) {}
 
     void on_description(const ClusterDescription& description) { intake_.describe(description); }
 

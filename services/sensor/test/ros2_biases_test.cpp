@@ -18,6 +18,7 @@ using testing::HasSubstr;
 constexpr std::int64_t ms = 1'000'000;
 constexpr double degree = 3.14159265358979323846 / 180;
 constexpr std::array<double, 6> bias_rad_s{0.35 * degree, -0.2 * degree, 0.4 * degree, -0.65 * degree, 0.25 * degree, 0.5 * degree};
+constexpr std::array<double, 6> gain{1.02, 0.99, 1.01, 0.98, 1.0, 1.03};
 
 /// A sensor of two IMUs on the local bus under virtual time: 200 Hz, stamps without an error.
 class Ros2Biases : public testing::Test {
@@ -107,6 +108,27 @@ TEST_F(Ros2Biases, are_not_learned_in_motion_and_the_frames_do_not_wait)
     EXPECT_EQ(source->description().revision, 1U);
     EXPECT_EQ(source->description().bias[0], 0);
     EXPECT_THAT(told, HasSubstr("the IMUs move at the start"));
+}
+
+TEST_F(Ros2Biases, and_gains_are_those_of_the_calibration_where_there_is_one)
+{
+    calibration::CalibratedCluster calibrated;
+    calibrated.gain.fill(1);
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+        calibrated.description.bias[axis] = bias_rad_s[axis];
+        calibrated.gain[axis] = gain[axis];
+    }
+    settings.source.calibration = calibrated;
+    settings.source.ros2->rest_s = 0;
+    const double rate = 0.5;
+    const auto frames = run(4, [&](double, std::size_t axis) { return gain[axis] * rate + bias_rad_s[axis]; });
+
+    ASSERT_GT(frames.size(), 600U);
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+        EXPECT_NEAR(mean_rate(frames, axis), rate, 0.01 * degree) << axis;
+        EXPECT_EQ(source->description().bias[axis], bias_rad_s[axis]) << axis;
+    }
+    EXPECT_EQ(source->description().revision, 1U);
 }
 
 }  // namespace

@@ -62,6 +62,14 @@ const Table<ImuSection>& imu_table()
 
 }  // namespace
 
+Rows<SourceSection> imus_row()
+{
+    return list<SourceSection, ImuSection>(
+        {.name = "imus", .otherwise = "none", .sentence = "The IMUs, up to 8. Of a log: those that a system file for ROS 2 recorded."},
+        &SourceSection::imus, imu_table(), max_axes / axes_per_imu,
+        [](const SourceSection&, ImuSection& imu, std::size_t place) { imu.name = fmt::format("IMU{}", place + 1); });
+}
+
 Rows<SourceSection> ros2_source_rows()
 {
     const auto figures = chosen(record<simulation::Scenario>(simulation::scenario_record()), {"noise_rad", "quantum_rad", "seed"});
@@ -80,9 +88,15 @@ Rows<SourceSection> ros2_source_rows()
                 .sentence = "How far an IMU's stamps may be from those of the others, its longest gap, and how much later than the stamps "
                             "frames go out."},
                &SourceSection::skew_s),
-         required(list<SourceSection, ImuSection>(
-             {.name = "imus", .sentence = "The IMUs, up to 8."}, &SourceSection::imus, imu_table(), max_axes / axes_per_imu,
-             [](const SourceSection&, ImuSection& imu, std::size_t place) { imu.name = fmt::format("IMU{}", place + 1); }))}};
+         calibration_row(),
+         value({.name = "rest_s",
+                .unit = "s",
+                .bounds = settings::not_negative,
+                .otherwise = "2; 0 with a `calibration`, and for accelerometers",
+                .sentence = "Rest at the start from which biases and, without `noise_rad`, the noise are learned. Where the IMUs move, frames "
+                            "begin at once and the biases are not known."},
+               &SourceSection::rest_s),
+         required(imus_row())}};
     return table.rows();
 }
 

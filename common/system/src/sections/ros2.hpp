@@ -10,6 +10,9 @@ namespace quorient::system {
 
 inline constexpr std::size_t axes_per_imu = 3;
 
+/// `imus`, for their own source and for the replay of its recording.
+configuration::Rows<SourceSection> imus_row();
+
 /// `source: {kind: ros2_imu, …}`.
 configuration::Rows<SourceSection> ros2_source_rows();
 

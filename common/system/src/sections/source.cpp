@@ -107,6 +107,8 @@ Rows<SourceSection> file_row()
         read_files, write));
 }
 
+}  // namespace
+
 Rows<SourceSection> calibration_row()
 {
     const auto read = [](Section& section, SourceSection& source) { section.text("calibration", source.calibration); };
@@ -121,6 +123,8 @@ Rows<SourceSection> calibration_row()
              "Cluster file of `quorient calibrate`, from the folder of the system file: axes, gains and noise of these very sensors."},
         read, write);
 }
+
+namespace {
 
 Table<SourceSection> log_table()
 {
@@ -144,7 +148,8 @@ Table<SourceSection> log_table()
                    &SourceSection::to_s),
              scenario_rows({"seed", "noise_rad", "quantum_rad"}), passed_over<SourceSection>({.name = "motion", .sentence = of_simulation}),
              passed_over<SourceSection>({.name = "duration_s", .sentence = of_simulation}),
-             passed_over<SourceSection>({.name = "quantize", .sentence = of_simulation})}};
+             passed_over<SourceSection>({.name = "quantize", .sentence = of_simulation}), imus_row(),
+             passed_over<SourceSection>({.name = "skew_s", .sentence = "Passed over, so that a file for ROS 2 serves to replay its own recording."})}};
 }
 
 template <SensorKind unit_kind>

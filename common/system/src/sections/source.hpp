@@ -52,4 +52,7 @@ struct SourceSection {
 
 const configuration::Table<SourceSection>& source_table();
 
+/// `calibration`, for every source of real sensors.
+configuration::Rows<SourceSection> calibration_row();
+
 }  // namespace quorient::system

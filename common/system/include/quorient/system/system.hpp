@@ -44,9 +44,9 @@ struct ProcessSettings {
 struct LogSettings {
     std::vector<std::string> files;  ///< several: instruments that logged one motion apart, merged by time
     double rest_s = 10;              ///< the log's beginning, at rest: biases and (without a calibration) sigmas come from it
-    std::optional<calibration::CalibratedCluster> calibration;  ///< axes, gains and noise of these very sensors
     double from_s = 0;
     std::optional<double> to_s;
+    bool of_imus = false;  ///< the axes are those of a robot's IMUs, whose names the log must have
     std::optional<double> stated_rate_hz;  ///< as the file says; its default is no claim about the log
 };
 
@@ -62,12 +62,14 @@ struct Ros2ImuSettings {
 struct Ros2SourceSettings {
     std::vector<Ros2ImuSettings> imus;
     double skew_s = 0.02;  ///< how far an IMU's stamps may be from those of the others, and how much later than them frames go out
+    double rest_s = 2;      ///< rest at the start from which biases are learned; 0 = none are
 };
 
 struct SourceSettings {
     simulation::Scenario scenario;  ///< motion, rate, noise, faults; of a log only the faults and the seed count
     std::optional<LogSettings> log;
     std::optional<Ros2SourceSettings> ros2;
+    std::optional<calibration::CalibratedCluster> calibration;  ///< of these very sensors; of a log or of ros2
     std::optional<simulation::VesselScenario> vessel;  ///< in place of the scenario, of which then only the faults count
     double speed = 1;                                  ///< times real time
 };
