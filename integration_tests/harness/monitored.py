@@ -33,8 +33,8 @@ class MonitoredSystem(ProcessTest):
         )
         self.eventually(lambda: (self.get("/state") or {}).get("level") == "FULL", "the monitor shows a level of FULL")
 
-    def request(self, method, path, body=None, headers=None):
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=5)
+    def request(self, method, path, body=None, headers=None, address="127.0.0.1"):
+        connection = http.client.HTTPConnection(address, self.port, timeout=5)
         try:
             connection.request(method, path, body, headers or {})
             response = connection.getresponse()

@@ -6,6 +6,7 @@
 #include "quorient/messages/name.hpp"
 #include "quorient/messages/words.hpp"
 #include "quorient/rotation/euler.hpp"
+#include "quorient/system/monitor_token.hpp"
 
 #include <fmt/format.h>
 #include <cmath>
@@ -118,7 +119,8 @@ Names::Names(const system::System& its_system)
     : system(its_system.name),
       unit(its_system.unit),
       has_attitude(its_system.has_attitude()),
-      orders(its_system.web_monitor && its_system.web_monitor->allow_orders)
+      orders(its_system.web_monitor && its_system.web_monitor->allow_orders),
+      token(orders && !system::monitor_token_file(its_system).empty())
 {
     for (const auto& lane : its_system.lanes) {
         lanes.push_back(lane.name);
@@ -159,6 +161,7 @@ Json picture(const Tick& tick, const Names& names)
             {"interval_s", tick.described ? rounded(tick.description.interval_s, 9) : Json(nullptr)},
             {"has_attitude", names.has_attitude},
             {"orders", names.orders},
+            {"token", names.token},
             {"tick", tick.number},
             {"wall_time_ms", tick.wall_time_ns / 1'000'000},
             {"level", level_word(tick)},

@@ -21,6 +21,7 @@ struct Names {
     std::vector<std::uint32_t> lane_ids;
     bool has_attitude = true;
     bool orders = false;
+    bool token = false;  ///< other hosts may send orders too, with a token
 };
 
 /// Shortest text of a number with this many significant digits; null for what is not finite.

@@ -2,12 +2,16 @@
 
 #include "orders.hpp"
 #include "pages.hpp"
+#include "quorient/system/monitor_token.hpp"
 
 #include <fmt/format.h>
 #include <strings.h>
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <optional>
+#include <stdexcept>
+#include <utility>
 
 namespace quorient::monitor {
 namespace {
@@ -51,6 +55,21 @@ bool is_loopback(const std::string& address)
     return address.rfind("127.", 0) == 0;
 }
 
+/// Behind a proxy on this host every request arrives from loopback; the proxy says so.
+bool is_forwarded(const httplib::Request& request)
+{
+    return request.has_header("Forwarded") || request.has_header("X-Forwarded-For") || request.has_header("Via");
+}
+
+std::optional<security::Token> token_of(const system::System& system)
+{
+    const auto file = system::monitor_token_file(system);
+    if (!system.web_monitor->allow_orders || file.empty()) return std::nullopt;
+    auto token = security::Token::read(file);
+    if (!token) throw std::runtime_error(token.error());
+    return std::move(*token);
+}
+
 }  // namespace
 
 Site::Site(const system::System& system, Exchange& exchange, const Limits& limits)
@@ -58,6 +77,7 @@ Site::Site(const system::System& system, Exchange& exchange, const Limits& limit
       names_(system),
       limits_(limits),
       exchange_(exchange),
+      token_(token_of(system)),
       viewers_(names_),
       broadcaster_(names_, exchange, viewers_),
       dygraph_script_(file_text(std::string{dygraph_folder} + "dygraph.min.js")),
@@ -94,10 +114,21 @@ Site::~Site()
 /// A page of another site could lead a browser here under that site's name (DNS rebinding). On loopback only our own names count.
 bool Site::is_for_us(const httplib::Request& request) const
 {
-    if (!is_loopback(settings_.address)) return true;
+    return !is_loopback(settings_.address) || names_this_host(request);
+}
+
+bool Site::names_this_host(const httplib::Request& request) const
+{
     const auto host = request.get_header_value("Host");
     const auto name = host.substr(0, host.rfind(':'));
     return name == settings_.address || name == "localhost" || name == "127.0.0.1";
+}
+
+/// This host needs no token. Whoever a proxy or another site's name has led here counts as another host.
+bool Site::may_order(const httplib::Request& request) const
+{
+    if (is_loopback(request.remote_addr) && !is_forwarded(request) && names_this_host(request)) return true;
+    return token_ && token_->admits(request.get_header_value("Authorization"));
 }
 
 httplib::Server::HandlerResponse Site::begin_viewer(const httplib::Request& request, httplib::Response& response)
@@ -178,7 +209,9 @@ void Site::route_orders()
 {
     server_.Post("/order", [this](const httplib::Request& request, httplib::Response& response) {
         if (!settings_.allow_orders) return refuse(response, 403, "this monitor was started without --allow-orders");
-        if (!is_loopback(request.remote_addr)) return refuse(response, 403, "orders are accepted from this host alone");
+        if (!may_order(request))
+            return refuse(response, 403, token_ ? "another host needs the token of this monitor for an order"
+                                                : "orders are accepted from this host alone; monitor.token_file lets others send them");
         // A form of another site can be sent here by a browser, but not with this type.
         if (request.get_header_value("Content-Type") != json_type) return refuse(response, 415, "an order is application/json");
         const auto order = order_from(request.body);

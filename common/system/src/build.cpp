@@ -1,4 +1,5 @@
 #include "build.hpp"
+#include "quorient/security/token.hpp"
 #include "quorient/system/numbers.hpp"
 
 #include <fmt/format.h>
@@ -81,7 +82,7 @@ void build_voters(const File& file, System& system)
     }
 }
 
-void build_monitor(const File& file, System& system)
+void build_monitor(File& file, System& system)
 {
     if (!file.monitor) return;
     auto& monitor = system.web_monitor.emplace();
@@ -89,6 +90,7 @@ void build_monitor(const File& file, System& system)
     monitor.address = file.monitor->address;
     monitor.port = file.monitor->port;
     monitor.allow_orders = file.monitor->allow_orders;
+    if (!file.monitor->token_file.empty()) file.monitor->token_file = beside(system, file.monitor->token_file);
     if (!system.voters.empty()) monitor.process.bus.voted_lease_s = system.voters.front().voting.lease_s;
 }
 
@@ -132,6 +134,14 @@ void check_buses(const System& system, const Overrides& overrides, Report& repor
     if (system.web_monitor) check_bus(system.web_monitor->process, "monitor", overrides, report);
 }
 
+/// The token of the monitor's orders is a secret of this host, as keys are.
+void check_token(const File& file, const Overrides& overrides, Report& report)
+{
+    if (!file.monitor || file.monitor->token_file.empty()) return;
+    if (!overrides.joins || overrides.any_host || !overrides.concerns(file.monitor->name)) return;
+    if (const auto token = security::Token::read(file.monitor->token_file); !token) report.at("monitor.token_file", token.error());
+}
+
 void check_expectations(const System& system, Report& report)
 {
     if (system.has_attitude()) return;
@@ -168,6 +178,7 @@ System build(const std::string& name, File& file, const Overrides& overrides, Re
     check_compositions(system, report);
     check_algorithms(system, report);
     check_buses(system, overrides, report);
+    check_token(file, overrides, report);
     check_expectations(system, report);
     return system;
 }

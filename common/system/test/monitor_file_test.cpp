@@ -1,3 +1,4 @@
+#include "quorient/system/monitor_token.hpp"
 #include "quorient/system/system.hpp"
 
 #include <gmock/gmock.h>
@@ -50,6 +51,28 @@ TEST(MonitorFile, the_sensor_does_not_wait_for_the_monitor)
 {
     const auto with = loaded({"monitor.port=8080"});
     EXPECT_EQ(with->sensor.consumers, loaded({})->sensor.consumers);
+}
+
+TEST(MonitorFile, the_token_counts_from_the_folder_of_the_file_and_must_be_there)
+{
+    EXPECT_EQ(system::monitor_token_file(*loaded({})), "");
+    EXPECT_EQ(system::monitor_token_file(*loaded({"monitor.port=0"})), "");
+    const auto elsewhere = system::load(QUORIENT_SOURCE_DIR "/deploy/configurations/demo.yaml",
+                                        {.dds = {}, .domain = {}, .processes = {}, .set = {"monitor.token_file=../token"}, .any_host = true});
+    EXPECT_EQ(system::monitor_token_file(*elsewhere), QUORIENT_SOURCE_DIR "/deploy/token");
+    const auto why = refusal({"monitor.token_file=no-such-token"});
+    EXPECT_THAT(why, HasSubstr(QUORIENT_SOURCE_DIR "/deploy/configurations/no-such-token: cannot be read: No such file"));
+    EXPECT_THAT(why, HasSubstr("monitor.token_file"));
+}
+
+TEST(MonitorFile, another_host_needs_no_token_of_this_one)
+{
+    const auto of = [](const std::vector<std::string>& processes) {
+        return system::load(QUORIENT_SOURCE_DIR "/deploy/configurations/demo.yaml",
+                            {.dds = {}, .domain = {}, .processes = processes, .set = {"monitor.token_file=no-such-token"}});
+    };
+    EXPECT_TRUE(of({"sensor"}));
+    EXPECT_FALSE(of({"monitor"}));
 }
 
 TEST(MonitorFile, says_what_is_wrong_with_the_address_the_port_and_the_keys)

@@ -6,9 +6,12 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <future>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 using namespace quorient;
@@ -73,6 +76,28 @@ protected:
 
 struct WithOrders : Serving {
     WithOrders() : Serving({}, {"monitor.port=0", "monitor.allow_orders=true"}) {}
+};
+
+const std::string secret = "0123456789abcdef0123456789ABCDEF";
+
+/// The file of a token, for as long as the test lasts.
+struct TokenFile {
+    TokenFile()
+    {
+        if (!::mkdtemp(folder.data())) throw std::runtime_error("no temporary directory");
+        std::ofstream{path()} << secret << "\n";
+        std::filesystem::permissions(path(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+    }
+    ~TokenFile() { std::filesystem::remove_all(folder); }
+    std::string path() const { return folder + "/token"; }
+    std::string folder = testing::TempDir() + "monitor-XXXXXX";
+};
+
+struct WithToken : TokenFile, Serving {
+    WithToken() : Serving({}, {"monitor.port=0", "monitor.allow_orders=true", "monitor.token_file=" + path()}) {}
+
+    /// The answer to an order with these headers.
+    int status(httplib::Headers headers) { return client().Post("/order", headers, R"({"action":"clear"})", "application/json")->status; }
 };
 
 struct WithFewThreads : Serving {
@@ -178,6 +203,70 @@ TEST_F(WithOrders, an_order_reaches_the_dds_side_as_it_was_given)
     EXPECT_EQ(action_of(*order), CommandAction::inject);
     EXPECT_EQ(order->axes, 0b0100u);
     EXPECT_EQ(order->value, 0.05);
+}
+
+/// What the server sees of another host here: a proxy's header, or a name that is not this host's.
+const httplib::Headers from_elsewhere{{"X-Forwarded-For", "192.0.2.7"}};
+
+TEST_F(WithOrders, from_elsewhere_are_refused_while_there_is_no_token)
+{
+    using httplib::Headers;
+    for (const Headers& headers : {from_elsewhere, Headers{{"Forwarded", "for=192.0.2.7"}}, Headers{{"Via", "1.1 proxy"}},
+                                   Headers{{"X-Forwarded-For", "192.0.2.7"}, {"Authorization", "Bearer " + secret}},
+                                   Headers{{"X-Forwarded-For", "192.0.2.7"}, {"Authorization", "Bearer "}}}) {
+        const auto refused = client().Post("/order", headers, R"({"action":"clear"})", "application/json");
+        EXPECT_EQ(refused->status, 403);
+        EXPECT_THAT(refused->body, HasSubstr("from this host alone"));
+    }
+    EXPECT_FALSE(exchange_.next_order());
+}
+
+TEST_F(WithToken, an_order_from_elsewhere_is_accepted_with_the_token_and_with_no_other)
+{
+    auto headers = from_elsewhere;
+    EXPECT_EQ(status(headers), 403);
+    for (const auto& wrong : {"Bearer", "Bearer 0123456789abcdef0123456789ABCDEE", "Basic 0123456789abcdef0123456789ABCDEF"}) {
+        headers = from_elsewhere;
+        headers.emplace("Authorization", wrong);
+        EXPECT_EQ(status(headers), 403) << wrong;
+    }
+    EXPECT_FALSE(exchange_.next_order());
+    headers = from_elsewhere;
+    headers.emplace("Authorization", "Bearer " + secret);
+    EXPECT_EQ(status(headers), 202);
+    EXPECT_TRUE(exchange_.next_order());
+}
+
+TEST_F(WithToken, this_host_needs_none)
+{
+    EXPECT_EQ(status({}), 202);
+    EXPECT_TRUE(exchange_.next_order());
+}
+
+TEST_F(WithToken, is_shown_nowhere)
+{
+    const auto state = state_after(0);
+    EXPECT_EQ(state["token"], true);
+    std::string all = state.dump() + system_.configuration;
+    for (const char* path : {"/", "/events", "/metrics", "/history"}) all += client().Get(path)->body;
+    all += client().Post("/order", from_elsewhere, "{}", "application/json")->body;
+    EXPECT_THAT(all, Not(HasSubstr(secret)));
+}
+
+/// Served on every network, a request may carry any name: one led here by DNS rebinding is not this host's.
+TEST(Site, takes_orders_under_the_name_of_this_host_alone_where_it_serves_every_network)
+{
+    const auto system = monitor::test::demo({"monitor.port=0", "monitor.allow_orders=true", "monitor.address=0.0.0.0"});
+    Exchange exchange;
+    const Site site{system, exchange};
+    httplib::Client client{"127.0.0.1", site.port()};
+    const auto status = [&](const std::string& host) {
+        return client.Post("/order", {{"Host", host}}, R"({"action":"clear"})", "application/json")->status;
+    };
+    EXPECT_EQ(status("evil.example:8080"), 403);
+    EXPECT_FALSE(exchange.next_order());
+    EXPECT_EQ(status("localhost:8080"), 202);
+    EXPECT_TRUE(exchange.next_order());
 }
 
 TEST_F(WithOrders, says_what_is_wrong_with_an_order)

@@ -28,7 +28,7 @@ function show() {
   showLanes(state);
   showServices(state);
   showTiles(state);
-  allowOrders(state.orders, selected);
+  allowOrders(state.orders, state.token, selected);
 }
 
 function draw() {

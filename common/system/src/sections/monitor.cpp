@@ -32,6 +32,20 @@ Rows<MonitorSection> address_row()
                                [](const MonitorSection& monitor) { return to_node(monitor.address); });
 }
 
+Rows<MonitorSection> token_row()
+{
+    const auto read = [](Section& section, MonitorSection& monitor) { section.text("token_file", monitor.token_file); };
+    const auto write = [](const MonitorSection& monitor) {
+        return monitor.token_file.empty() ? YAML::Node{YAML::NodeType::Undefined} : to_node(monitor.token_file);
+    };
+    return own<MonitorSection>({.name = "token_file",
+                                .form = "text",
+                                .otherwise = "none",
+                                .sentence = "File with the token that other hosts need for orders, mode 0600; counts from the folder of the system "
+                                            "file. Without it orders are taken from this host alone."},
+                               read, write);
+}
+
 /// Its own defaults hold for these keys, the whole file's for the others.
 constexpr std::array<std::string_view, 5> own_defaults{"transport", "spin", "priority", "lock_memory", "processors"};
 
@@ -54,7 +68,8 @@ const Table<MonitorSection>& monitor_table()
          value({.name = "port", .bounds = settings::Bounds{.lowest = 0, .highest = 65'535}, .sentence = "TCP port of the page; 0 = any free one."},
                &MonitorSection::port),
          value({.name = "allow_orders", .sentence = "The page may send orders: faults, readmissions and resets."},
-               &MonitorSection::allow_orders)}};
+               &MonitorSection::allow_orders),
+         token_row()}};
     return table;
 }
 

@@ -14,6 +14,7 @@ struct MonitorSection {
     std::string address = "127.0.0.1";
     std::uint32_t port = 8080;
     bool allow_orders = false;
+    std::string token_file;
 };
 
 const configuration::Table<MonitorSection>& monitor_table();
