@@ -8,7 +8,7 @@ import subprocess
 import unittest
 
 from integration_tests.harness import exact_json
-from integration_tests.harness.foreign import INTEROP, InteropTest, angle, build, conjugate, node, product
+from integration_tests.harness.foreign import InteropTest, angle, conjugate, node, product
 from integration_tests.harness.processes import CONFIGURATIONS
 
 IMU_LINE = re.compile(
@@ -170,7 +170,7 @@ class In(Ros2Test):
         configuration = self.write("robot.yaml", ROBOT)
         events, frames, voted = (self.echo_logged(topic) for topic in ("event", "frame", "voter_output"))
         # The robot is this machine's in any case: release-root passes only SIGINT and SIGTERM on.
-        robot, said = self.start_logged("robot", build(INTEROP / "ros2_node_cyclonedds", "ros2_node_cyclonedds"), self.domain, "robot")
+        robot, said = self.start_logged("robot", *node("ros2_node_cyclonedds"), self.domain, "robot")
         services = self.start_pipeline(configuration)
         self.eventually(lambda: any(v["mode"] == NORMAL for v in exact_json.objects(voted)), "the robot's attitude is voted on", timeout=30)
 
@@ -248,7 +248,7 @@ class Uncalibrated(Ros2Test):
 
     def start_biased(self):
         self.topics = {topic: self.echo_logged(topic) for topic in ("event", "cluster", "verdict", "voter_output")}
-        self.imus, self.said = self.start_logged("imus", self.node("cyclonedds"), self.domain, "biased")
+        self.imus, self.said = self.start_logged("imus", *node("ros2_node_cyclonedds"), self.domain, "biased")
         self.system = self.write("biased.yaml", BIASED)
         self.services = self.start_pipeline(self.system)
         self.eventually(lambda: self.said.read_text().endswith("\n"), "the IMUs say when they will turn")
