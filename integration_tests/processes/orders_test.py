@@ -1,6 +1,6 @@
 """Orders to the monitor from another address than loopback: with the token they reach the system, without it they are refused.
 
-The tests run in a network namespace of their own, whose loopback interface has a second address."""
+The tests run in a network namespace of their own, whose loopback interface gets a second address."""
 import ctypes
 import os
 import subprocess
@@ -17,13 +17,16 @@ CLEAR = '{"action":"clear"}'
 BREAK_G2 = '{"action":"inject","fault":"axis=1,kind=bias,value=0.05,start=0"}'
 
 
+def ip(*words):
+    subprocess.run(["ip", *words], check=True, capture_output=True, text=True, timeout=30)
+
+
 def leave_the_network():
     """From here on this process and its children have a network of their own. @returns why that is not permitted; None where it is."""
     try:
         if ctypes.CDLL(None, use_errno=True).unshare(CLONE_NEWNET | (CLONE_NEWUSER if os.geteuid() else 0)) != 0:
             return os.strerror(ctypes.get_errno())
-        for words in (("link", "set", "lo", "up"), ("address", "add", f"{ELSEWHERE}/32", "dev", "lo")):
-            subprocess.run(["ip", *words], check=True, capture_output=True, text=True, timeout=30)
+        ip("link", "set", "lo", "up")
     except FileNotFoundError as problem:
         return f"{problem.filename} is not installed"
     except subprocess.CalledProcessError as problem:
@@ -44,6 +47,10 @@ class Orders(MonitoredSystem):
 
     def start_for_all(self, *arguments):
         self.start_system("--set", "monitor.address=0.0.0.0", "--set", "monitor.allow_orders=true", *arguments)
+        # Only now: the services take the loopback's addresses as they are when they start, and would use this one.
+        address = f"{ELSEWHERE}/32"
+        ip("address", "add", address, "dev", "lo")
+        self.addCleanup(ip, "address", "del", address, "dev", "lo")
 
     def order(self, address, order=CLEAR, authorization=None):
         headers = {"Content-Type": "application/json"} | ({"Authorization": authorization} if authorization else {})
