@@ -23,6 +23,7 @@ INSIDE = "QUORIENT_GROWTH_INSIDE"
 START_S = 40  # both vendors announce participants anew within it
 IDLE_S = 60  # two periods of the slower vendor's announcements
 SETTLED = 3  # times the idle traffic: a second with more still belongs to the start
+LONGEST_S = 300  # the units end by themselves, whatever happens to this program
 PARTICIPANTS = 9  # of a unit: three lanes of two, two voters, launch
 
 
@@ -61,7 +62,8 @@ class Fleet:
         for unit in range(1, units + 1):
             run_directory = pathlib.Path(self.folder.name) / str(unit)
             run_directory.mkdir()
-            command = [BIN / "quorient", "launch", CONFIGURATIONS / "demo.yaml", "--dds", vendor, "--domain", DOMAIN, "--without", "sensor", "--join", "--json"]
+            command = [BIN / "quorient", "launch", CONFIGURATIONS / "demo.yaml", "--dds", vendor, "--domain", DOMAIN, "--without", "sensor", "--join", "--json",
+                       "--duration", LONGEST_S]
             for setting in (f"unit.id={unit}", "source.faults=[]", "expect=null"):
                 command += ["--set", setting]
             self.launches.append(subprocess.Popen(
@@ -109,6 +111,7 @@ def main():
     parser.add_argument("--vendor", nargs="+", default=["cyclonedds", "fastdds"])
     parser.add_argument("--units", nargs="+", type=int, default=[1, 2, 4, 8])
     options = parser.parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # leaves the context, which ends the units
     if INSIDE not in os.environ:
         inside = ["unshare", "-n", "sh", "-c", 'ip link set lo up && exec "$@"', "sh", sys.executable, "-m", "integration_tests.growth", *sys.argv[1:]]
         os.execvpe("unshare", inside, dict(os.environ, **{INSIDE: "yes"}))

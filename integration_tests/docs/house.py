@@ -82,6 +82,7 @@ def main():
     print("\n| data members of | before | after |\n|---|---|---|")
     for name, (then, now) in STATEFUL.items():
         print(f"| {name} | {members(before, then)} (`{then}`) | {members(after, now)} (`{now}`) |")
+    print("\nWhat the two classes hold by pointer has members of its own, then as now.")
     print(f"\nFiles of more than {LONG_FILE} lines after: " + (", ".join(f"`{path}` ({lines})" for lines, path in long_files) or "none") + ".")
 
 

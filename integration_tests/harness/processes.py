@@ -47,8 +47,11 @@ class ProcessTest(unittest.TestCase):
     stood still is void, and the test runs again. Where it stood still in every attempt the test is skipped, and says so."""
 
     next_domain = 1
+    needs_quiet_machine = True  # not so where nothing that is judged depends on time: such a test has one attempt on any machine
 
     def run(self, result):
+        if not self.needs_quiet_machine:
+            return super().run(result)
         attempts = []
 
         def attempt():

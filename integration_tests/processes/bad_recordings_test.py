@@ -36,6 +36,8 @@ def sealed(packet):
 
 @unittest.skipUnless(RECORDING.exists(), f"no recording at {RECORDING}")
 class Array(ProcessTest):
+    needs_quiet_machine = False
+
     def replay(self, content):
         log = self.run_directory / "log.bin"
         log.write_bytes(content)
@@ -104,6 +106,8 @@ class Array(ProcessTest):
 
 @unittest.skipUnless(len(FLIGHT) == 4 and OTHER_FLIGHT[0].exists(), "no flights of four DOTs in the data folder")
 class SeveralLogs(ProcessTest):
+    needs_quiet_machine = False
+
     def setUp(self):
         super().setUp()
         self.system = self.write("flight.yaml", FLIGHT_SYSTEM)

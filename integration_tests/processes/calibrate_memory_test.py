@@ -32,6 +32,8 @@ def write_log(file, seed=7):
 
 
 class LongLog(ProcessTest):
+    needs_quiet_machine = False
+
     def test_takes_at_most_200_mb_and_finds_what_was_put_in(self):
         log = self.run_directory / "long.csv"
         write_log(log)

@@ -80,6 +80,8 @@ class Rudder(ProcessTest):
 
 
 class SystemFile(ProcessTest):
+    needs_quiet_machine = False
+
     def refused(self, text, *arguments):
         result = self.run_program("quorient", "launch", self.write("vessel.yaml", text), *arguments, timeout=20)
         self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
