@@ -6,7 +6,6 @@
 #include "quorient/messages/name.hpp"
 #include "quorient/messages/words.hpp"
 #include "quorient/rotation/euler.hpp"
-#include "quorient/system/monitor_token.hpp"
 
 #include <fmt/format.h>
 #include <cmath>
@@ -120,7 +119,7 @@ Names::Names(const system::System& its_system)
       unit(its_system.unit),
       has_attitude(its_system.has_attitude()),
       orders(its_system.web_monitor && its_system.web_monitor->allow_orders),
-      token(orders && !system::monitor_token_file(its_system).empty())
+      token(orders && !its_system.web_monitor->token_file.empty())
 {
     for (const auto& lane : its_system.lanes) {
         lanes.push_back(lane.name);

@@ -2,7 +2,6 @@
 
 #include "orders.hpp"
 #include "pages.hpp"
-#include "quorient/system/monitor_token.hpp"
 
 #include <fmt/format.h>
 #include <strings.h>
@@ -63,9 +62,9 @@ bool is_forwarded(const httplib::Request& request)
 
 std::optional<security::Token> token_of(const system::System& system)
 {
-    const auto file = system::monitor_token_file(system);
-    if (!system.web_monitor->allow_orders || file.empty()) return std::nullopt;
-    auto token = security::Token::read(file);
+    const auto& monitor = *system.web_monitor;
+    if (!monitor.allow_orders || monitor.token_file.empty()) return std::nullopt;
+    auto token = security::Token::read(monitor.token_file);
     if (!token) throw std::runtime_error(token.error());
     return std::move(*token);
 }

@@ -13,7 +13,7 @@ namespace quorient::sensor {
 ///
 /// The cluster rests while, over half a second, the median instrument is quiet (below 0.02 rad/s about its mean), turns slower than
 /// 0.05 rad/s, and its mean stays within 0.02 rad/s of that before. The median decides, so that one faulty instrument does not hide a rest.
-/// An instrument learns nothing that is beyond what its class allows, or that comes from less than half of the frames.
+/// An axis learns nothing that is beyond what the class `consumer`, the widest, allows, or that comes from less than half of the frames.
 /// Not seen: a slow, steady turn, which looks like a bias common to all.
 class RestLearner {
 public:

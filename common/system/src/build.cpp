@@ -91,6 +91,7 @@ void build_monitor(File& file, System& system)
     monitor.port = file.monitor->port;
     monitor.allow_orders = file.monitor->allow_orders;
     if (!file.monitor->token_file.empty()) file.monitor->token_file = beside(system, file.monitor->token_file);
+    monitor.token_file = file.monitor->token_file;
     if (!system.voters.empty()) monitor.process.bus.voted_lease_s = system.voters.front().voting.lease_s;
 }
 

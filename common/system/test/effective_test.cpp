@@ -1,5 +1,4 @@
 #include "files.hpp"
-#include "quorient/system/monitor_token.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -66,7 +65,7 @@ void expect_same(const System& a, const System& b)
         EXPECT_EQ(a.web_monitor->process.bus.transport, b.web_monitor->process.bus.transport);
         EXPECT_EQ(a.web_monitor->port, b.web_monitor->port);
         EXPECT_EQ(a.web_monitor->allow_orders, b.web_monitor->allow_orders);
-        EXPECT_EQ(monitor_token_file(a), monitor_token_file(b));
+        EXPECT_EQ(a.web_monitor->token_file, b.web_monitor->token_file);
     }
     EXPECT_EQ(a.expectations.isolated, b.expectations.isolated);
     EXPECT_EQ(a.expectations.final_error_rad, b.expectations.final_error_rad);

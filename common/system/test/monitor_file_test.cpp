@@ -1,4 +1,3 @@
-#include "quorient/system/monitor_token.hpp"
 #include "quorient/system/system.hpp"
 
 #include <gmock/gmock.h>
@@ -55,11 +54,11 @@ TEST(MonitorFile, the_sensor_does_not_wait_for_the_monitor)
 
 TEST(MonitorFile, the_token_counts_from_the_folder_of_the_file_and_must_be_there)
 {
-    EXPECT_EQ(system::monitor_token_file(*loaded({})), "");
-    EXPECT_EQ(system::monitor_token_file(*loaded({"monitor.port=0"})), "");
+    EXPECT_EQ(loaded({})->web_monitor.value_or(system::MonitorProcess{}).token_file, "");
+    EXPECT_EQ(loaded({"monitor.port=0"})->web_monitor->token_file, "");
     const auto elsewhere = system::load(QUORIENT_SOURCE_DIR "/deploy/configurations/demo.yaml",
                                         {.dds = {}, .domain = {}, .processes = {}, .set = {"monitor.token_file=../token"}, .any_host = true});
-    EXPECT_EQ(system::monitor_token_file(*elsewhere), QUORIENT_SOURCE_DIR "/deploy/token");
+    EXPECT_EQ(elsewhere->web_monitor->token_file, QUORIENT_SOURCE_DIR "/deploy/token");
     const auto why = refusal({"monitor.token_file=no-such-token"});
     EXPECT_THAT(why, HasSubstr(QUORIENT_SOURCE_DIR "/deploy/configurations/no-such-token: cannot be read: No such file"));
     EXPECT_THAT(why, HasSubstr("monitor.token_file"));

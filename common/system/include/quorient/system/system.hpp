@@ -136,6 +136,7 @@ struct MonitorProcess {
     std::string address = "127.0.0.1";  ///< of the web server; anything but loopback only where stated
     std::uint32_t port = 8080;          ///< 0 = any free one
     bool allow_orders = false;          ///< faults, readmissions and resets from the page
+    std::string token_file;  ///< of the token that lets other hosts send orders (security/token.hpp), absolute; empty: this host alone sends them
 };
 
 /// What a run must show; `quorient launch` checks it against the simulator's truth and says so in its exit code.
