@@ -129,12 +129,13 @@ def job_csv(page):
              "The user knows `quorient diagnose` from the README.")
     page.write("flight.csv", three_imus())
     page.show("head -3 flight.csv", "quorient diagnose flight.csv")
-    page.say("The message says which names it understands, so the first line is written anew.")
-    page.show("sed -i '1s/.*/time_s,g0x,g0y,g0z,g1x,g1y,g1z,g2x,g2y,g2z/' flight.csv", "quorient diagnose flight.csv", "quorient diagnose flight.csv --unit deg/s",
+    page.say("The table does not state the unit of its rates, and the message names the option for it.")
+    page.show("quorient diagnose flight.csv --unit deg/s",
               "quorient diagnose flight.csv --unit deg/s --html flight.html > /dev/null && ls flight.html", "quorient diagnose flight.csv --unit deg/s --check > /dev/null")
     page.say("What would the pipeline have made of it? `quorient replay --help` asks for a system file; `flight.yaml` has three instruments.")
     shutil.copy(CONFIGURATIONS / "flight.yaml", page.folder)
-    page.show("quorient replay flight.csv", "quorient replay flight.cvs --system flight.yaml", "quorient replay flight.csv --system flight.yaml")
+    page.show("quorient replay flight.csv", "quorient replay flight.cvs --system flight.yaml", "quorient replay flight.csv --system flight.yaml",
+              "quorient replay flight.csv --system flight.yaml --unit deg/s")
 
 
 def job_own_hardware(page):

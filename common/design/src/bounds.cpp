@@ -81,7 +81,7 @@ Checked check_failures(const Brief& brief)
         return refused("failures", fmt::format("{} failures of {} instruments: with two left a difference does not tell which is wrong; {} are needed", k,
                                           brief.units(), k + 2));
     }
-    if (n < k + 3) return refused("failures", fmt::format("{} failures of {} axes leave {}: 3 are needed to measure a rotation", k, n, n - std::min<std::size_t>(n, k)));
+    if (n < k + 3) return refused("failures", fmt::format("with {} of {} axes failed {} are left: 3 are needed to measure a rotation", k, n, n - std::min<std::size_t>(n, k)));
     if (n == 4 || n >= k + 4) return {};
     return refused("failures", fmt::format(
         "{} isolable failures of {} axes: after {} of them {} axes are left, whose one parity equation shows a further fault and not its "

@@ -25,11 +25,23 @@ std::size_t count_of(AxisMask axes)
     return count;
 }
 
-std::string instrument_name(const ClusterDescription& description, std::size_t axis)
+/// Empty where the publisher gave none.
+std::string_view given_name(const ClusterDescription& description, std::size_t axis)
 {
     const std::size_t place = description.instrument[axis];
-    const auto name = place < max_axes ? text_of(description.instrument_name[place]) : std::string_view{};
-    return name.empty() ? "instrument " + std::to_string(place) : std::string{name};
+    return place < max_axes ? text_of(description.instrument_name[place]) : std::string_view{};
+}
+
+std::string instrument_name(const ClusterDescription& description, std::size_t axis)
+{
+    const auto name = given_name(description, axis);
+    return name.empty() ? "instrument " + std::to_string(description.instrument[axis]) : std::string{name};
+}
+
+std::string single_axis_name(const ClusterDescription& description, std::size_t axis)
+{
+    const auto name = given_name(description, axis);
+    return name.empty() ? "axis " + std::to_string(axis) : std::string{name};
 }
 
 /// x, y, z where the instrument has up to three axes; else the place in the instrument.
@@ -45,7 +57,7 @@ std::string axis_name(const ClusterDescription& description, std::size_t axis)
     if (axis >= axes_of_unit(description)) return "axis " + std::to_string(axis);
     const AxisMask all = siblings(description, axis);
     const std::size_t count = count_of(all);
-    if (count == 1) return instrument_name(description, axis);
+    if (count == 1) return single_axis_name(description, axis);
     return instrument_name(description, axis) + " " + letter(count_of(all & (axis_bit(axis) - 1)), count);
 }
 

@@ -31,6 +31,17 @@ TEST(AxisNames, are_those_of_the_instruments)
     EXPECT_EQ(axis_names(gyros, 0), "no axis");
 }
 
+TEST(AxisNames, without_a_given_name_are_the_number_that_orders_take)
+{
+    auto gyros = arrays_of(4, 1, "G");
+    gyros.instrument_name[1].fill(0);
+    EXPECT_EQ(axis_name(gyros, 1), "axis 1");
+    EXPECT_EQ(axis_name(gyros, 2), "G3");
+    auto imus = arrays_of(2, 3, "IMU");
+    imus.instrument_name[1].fill(0);
+    EXPECT_EQ(axis_name(imus, 4), "instrument 1 y");
+}
+
 TEST(AxisNames, do_not_trust_a_description)
 {
     auto broken = arrays_of(1, 3, "IMU");

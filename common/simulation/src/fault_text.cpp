@@ -197,8 +197,8 @@ std::string to_string(const FaultSpec& fault)
     if (kind != nullptr && !kind->unit.empty()) text += fmt::format(",value={}", fault.value);
     if (fault.kind == FaultKind::oscillation) text += fmt::format(",frequency={}", fault.frequency_hz);
     if (fault.kind == FaultKind::spike) text += fmt::format(",period={}", fault.period_s);
-    text += fmt::format(",start={}", fault.start_s);
-    if (std::isfinite(fault.end_s)) text += fmt::format(",end={}", fault.end_s);
+    text += fmt::format(",start={:.12g}", fault.start_s);
+    if (std::isfinite(fault.end_s)) text += fmt::format(",end={:.12g}", fault.end_s);
     return text;
 }
 
