@@ -12,12 +12,20 @@ namespace quorient::cli {
 
 namespace {
 
-void secure(bus::Settings& settings, const std::string& directory, const std::string& name)
+constexpr std::uint32_t usual_domain = 42;
+
+security::Governance governance_of(const std::string& directory)
 {
     const auto governance = security::find_governance(directory);
     if (!governance) fail(governance.error());
+    return *governance;
+}
+
+void secure(bus::Settings& settings, const std::string& directory, const std::string& name)
+{
+    const auto governance = governance_of(directory);
     const std::int64_t now_s = runtime::SystemClock{}.wall_ns() / 1'000'000'000;
-    const auto identity = security::find_identity(directory, {name, settings.vendor, settings.domain, governance->level}, now_s);
+    const auto identity = security::find_identity(directory, {name, settings.vendor, settings.domain, governance.level}, now_s);
     if (!identity) fail(fmt::format("{}", fmt::join(identity.error(), "\n")));
     settings.security = identity->files;
     settings.participant = identity->files.common_name;
@@ -29,7 +37,7 @@ void BusOptions::add_to(Verb& verb, const std::string& role)
 {
     identity = role;
     verb.option("--dds", dds, "fastdds or cyclonedds").shows_default();
-    verb.option("--domain", domain, "DDS domain").within(bus::bus_record(), "domain").shows_default();
+    verb.option("--domain", domain, fmt::format("DDS domain; default: that of --keys, else {}", usual_domain)).within(bus::bus_record(), "domain");
     verb.option("--interface", interface, "Network interface by name, address or subnet; any = the vendor's choice").shows_default();
     verb.option("--peer", peers, "IPv4 address to look for peers at, in place of multicast (repeatable)").value_name("ADDRESS");
     verb.option("--participants-per-host", participants_per_host, "That an address of --peer may have")
@@ -38,6 +46,12 @@ void BusOptions::add_to(Verb& verb, const std::string& role)
     verb.option("--unit", unit, "Unit id").within(system::unit_ids).shows_default();
     verb.option("--keys", keys, "Directory of the keys of a secured system (quorient keys)").value_name("DIR");
     verb.option("--as", identity, "Identity to use from that directory").value_name("NAME").shows_default();
+}
+
+std::uint32_t BusOptions::joined_domain() const
+{
+    if (domain) return *domain;
+    return keys.empty() ? usual_domain : governance_of(keys).domain;
 }
 
 std::unique_ptr<bus::Bus> BusOptions::open(const std::string& participant) const
@@ -49,7 +63,7 @@ std::unique_ptr<bus::Bus> BusOptions::open(const std::string& participant) const
     }
     bus::Settings settings;
     settings.vendor = *vendor;
-    settings.domain = domain;
+    settings.domain = joined_domain();
     settings.interface = interface == "any" ? "" : interface;
     settings.peers = peers;
     settings.participants_per_host = participants_per_host;
@@ -121,7 +135,9 @@ system::System SystemOptions::load_without_joining() const
 
 system::System SystemOptions::load(bool joins) const
 {
-    auto loaded = system::load(file, overrides(joins));
+    auto asked = overrides(joins);
+    asked.any_host = asked.any_host || !joins;
+    auto loaded = system::load(file, asked);
     if (!loaded) {
         fmt::print(stderr, "{}\n", loaded.error());
         throw Exit{2};

@@ -4,6 +4,7 @@
 #include "quorient/system/system.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace quorient::cli {
@@ -11,7 +12,7 @@ namespace quorient::cli {
 /// `--dds`, `--domain`, `--interface`, `--peer`, `--unit`, `--keys`, `--as`: how a live verb joins the bus.
 struct BusOptions {
     std::string dds = "cyclonedds";
-    std::uint32_t domain = 42;
+    std::optional<std::uint32_t> domain;
     std::string interface = "lo";
     std::vector<std::string> peers;
     std::uint32_t participants_per_host = bus::Settings{}.participants_per_host;
@@ -22,6 +23,9 @@ struct BusOptions {
 
     /// @param role  default of `--as`: monitor or operator.
     void add_to(Verb& verb, const std::string& role = "monitor");
+
+    /// The domain that was given, else that of the keys, else 42. @throws Exit{2} where the keys cannot be read.
+    std::uint32_t joined_domain() const;
 
     /// @throws Exit{2} after explaining a bad vendor, domain, interface or key on stderr.
     std::unique_ptr<bus::Bus> open(const std::string& participant) const;

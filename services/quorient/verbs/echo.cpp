@@ -63,7 +63,7 @@ struct Came {
     std::string explained(const EchoOptions& options) const
     {
         const auto others = other_units.empty() ? std::string{} : fmt::format("; there are samples of unit {}", fmt::join(other_units, ", "));
-        return fmt::format("no sample of {} of unit {} came in domain {} on '{}'{}", full_name(options.topic), options.bus.unit, options.bus.domain,
+        return fmt::format("no sample of {} of unit {} came in domain {} on '{}'{}", full_name(options.topic), options.bus.unit, options.bus.joined_domain(),
                            options.bus.interface, others);
     }
 };

@@ -51,7 +51,7 @@ public:
     std::string why_none() const
     {
         const auto seen = others_.empty() ? std::string{} : fmt::format("; there are frames of unit {}", fmt::join(others_, ", "));
-        return fmt::format("no frame of unit {} came in domain {} on '{}'{}", bus_.unit, bus_.domain, bus_.interface, seen);
+        return fmt::format("no frame of unit {} came in domain {} on '{}'{}", bus_.unit, bus_.joined_domain(), bus_.interface, seen);
     }
 
 private:

@@ -192,7 +192,7 @@ int status(const StatusOptions& options)
     loop.run();
     if (!options.watch) show();
     if (received.services.empty())
-        fmt::print(stderr, "no service of unit {} answers in domain {} on '{}'\n", options.bus.unit, options.bus.domain,
+        fmt::print(stderr, "no service of unit {} answers in domain {} on '{}'\n", options.bus.unit, options.bus.joined_domain(),
                    options.bus.interface);
     return received.services.empty() ? ExitCode::not_as_asked : ExitCode::done;
 }
