@@ -31,7 +31,7 @@ class Reader(threading.Thread):
                 response = connection.getresponse()
                 while data := response.read1(65536):
                     self.bytes += len(data)
-            except OSError:
+            except (OSError, http.client.HTTPException):
                 threading.Event().wait(0.05)
 
 
