@@ -9,6 +9,7 @@
 #include "cli/system_options.hpp"
 #include "quorient/system/numbers.hpp"
 #include "report/standing.hpp"
+#include "report/starvation.hpp"
 #include "verbs.hpp"
 
 #include <fmt/chrono.h>
@@ -35,16 +36,8 @@ struct StatusOptions {
 };
 
 /// Status comes twice a second: two samples of a service give its rate.
-struct Heard {
-    ServiceStatus first;
-    ServiceStatus latest;
+struct Heard : report::Interval {
     std::int64_t heard_ns = 0;  ///< steady
-
-    double rate_hz() const
-    {
-        const double elapsed_s = static_cast<double>(latest.wall_time_ns - first.wall_time_ns) * 1e-9;
-        return elapsed_s > 0 ? static_cast<double>(latest.published - first.published) / elapsed_s : 0;
-    }
 };
 
 using Services = std::map<std::uint32_t, Heard>;
@@ -120,7 +113,7 @@ struct Received {
             });
         };
         take(bus::topics::status, [this, now](const ServiceStatus& sample) {
-            auto& its = services.try_emplace(sample.service, Heard{sample, sample}).first->second;
+            auto& its = services.try_emplace(sample.service, Heard{{sample, sample}}).first->second;
             its.latest = sample;
             its.heard_ns = now();
         });
@@ -153,14 +146,24 @@ struct Received {
     std::map<std::uint32_t, std::int64_t> verdict_ns;
 };
 
+std::vector<report::Starving> starving_of(const Received& received)
+{
+    std::vector<report::Interval> services;
+    for (const auto& [id, heard] : received.services) services.push_back(heard);
+    return report::find_starving(services);
+}
+
 void print(const Received& received, const StatusOptions& options, std::int64_t now_ns)
 {
     if (!options.json) {
-        fmt::print("{}\n\n", report::standing_text(received.standing, now_ns));
+        fmt::print("{}\n{}\n", report::standing_text(received.standing, now_ns), report::starving_text(starving_of(received)));
         print_services(received.services);
         return print_events(received.events, options.events);
     }
-    Json json = {{"standing", report::standing_json(received.standing, now_ns)}, {"services", Json::array()}, {"events", Json::array()}};
+    Json json = {{"standing", report::standing_json(received.standing, now_ns)},
+                 {"starving", report::starving_json(starving_of(received))},
+                 {"services", Json::array()},
+                 {"events", Json::array()}};
     for (const auto& [id, heard] : received.services) json["services"].push_back(message_json(heard.latest));
     for (const auto& event : received.events) json["events"].push_back(message_json(event));
     fmt::print("{}\n", dump(json));

@@ -1,0 +1,77 @@
+#include "report/starvation.hpp"
+
+#include "quorient/messages/meaning.hpp"
+#include "quorient/messages/name.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+namespace quorient::report {
+
+namespace {
+
+/// The counts of two processes are not of the same moment, and a status comes twice a second.
+constexpr double enough = 0.95;
+
+constexpr std::string_view too_little_time =
+    "it gets too little processor time, or its input does not arrive: see its gaps, and real-time priority in deploy/README.md";
+
+bool gives_one_per_frame(const ServiceStatus& status)
+{
+    const auto role = role_of(status);
+    return role == ServiceRole::detector || role == ServiceRole::integrator || role == ServiceRole::voter;
+}
+
+double reference_hz(std::span<const Interval> services)
+{
+    double quickest_hz = 0;
+    for (const auto& service : services) {
+        if (role_of(service.latest) == ServiceRole::sensor && service.rate_hz() > 0) return service.rate_hz();
+        if (gives_one_per_frame(service.latest)) quickest_hz = std::max(quickest_hz, service.rate_hz());
+    }
+    return quickest_hz;
+}
+
+}  // namespace
+
+bool Interval::is_measured() const
+{
+    return latest.process == first.process && latest.wall_time_ns > first.wall_time_ns && latest.published >= first.published;
+}
+
+double Interval::rate_hz() const
+{
+    if (!is_measured()) return 0;
+    const double elapsed_s = static_cast<double>(latest.wall_time_ns - first.wall_time_ns) * 1e-9;
+    return static_cast<double>(latest.published - first.published) / elapsed_s;
+}
+
+std::vector<Starving> find_starving(std::span<const Interval> services)
+{
+    std::vector<Starving> found;
+    const double sensor_hz = reference_hz(services);
+    for (const auto& service : services) {
+        if (!gives_one_per_frame(service.latest) || state_of(service.latest) != ServiceState::running) continue;
+        if (!service.is_measured() || service.rate_hz() >= enough * sensor_hz) continue;
+        found.push_back({std::string{text_of(service.latest.name)}, service.rate_hz(), sensor_hz});
+    }
+    return found;
+}
+
+std::string starving_text(std::span<const Starving> starving)
+{
+    std::string text;
+    for (const auto& [service, rate_hz, sensor_hz] : starving)
+        text += fmt::format("STARVING: {} gives {:.0f} of {:.0f} frames per second: {}\n", service, rate_hz, sensor_hz, too_little_time);
+    return text;
+}
+
+nlohmann::ordered_json starving_json(std::span<const Starving> starving)
+{
+    auto list = nlohmann::ordered_json::array();
+    for (const auto& [service, rate_hz, sensor_hz] : starving)
+        list.push_back({{"service", service}, {"rate_hz", rate_hz}, {"sensor_hz", sensor_hz}});
+    return list;
+}
+
+}  // namespace quorient::report

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "quorient/messages/service_status.hpp"
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace quorient::report {
+
+/// Two statuses of one service: what it did between them.
+struct Interval {
+    ServiceStatus first;
+    ServiceStatus latest;
+
+    bool is_measured() const;  ///< time passed, in one process
+    double rate_hz() const;    ///< samples published; 0 where it is not measured
+};
+
+/// A service that does not give out what the sensor gives in.
+struct Starving {
+    std::string service;
+    double rate_hz = 0;
+    double sensor_hz = 0;
+};
+
+/// The detectors, integrators and voters that published less than 95 % as many samples as the sensor sent frames. Where no sensor answers,
+/// the quickest service stands in for it.
+std::vector<Starving> find_starving(std::span<const Interval> services);
+
+/// One line each.
+std::string starving_text(std::span<const Starving> starving);
+nlohmann::ordered_json starving_json(std::span<const Starving> starving);
+
+}  // namespace quorient::report
