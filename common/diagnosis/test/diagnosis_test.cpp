@@ -1,4 +1,4 @@
-#include "scene_frames.hpp"
+#include "a_diagnosis.hpp"
 
 #include "quorient/diagnosis/words.hpp"
 
@@ -17,37 +17,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
-
-constexpr double length_s = 30;
-constexpr double onset_s = 8;
-
-/// Calls spoil(rate of this axis in deg/s) on one axis from the onset on.
-template <class Spoil>
-void spoil_axis(FieldScene& scene, std::size_t axis, Spoil spoil, double from_s = onset_s, double to_s = 1e9)
-{
-    const double interval_s = scene.cluster.interval_s;
-    scene.spoil = [=](std::uint64_t sequence, FieldScene::Rates& rates) mutable {
-        const double time_s = static_cast<double>(sequence) * interval_s;
-        if (time_s >= from_s && time_s < to_s) rates[axis] = spoil(rates[axis]);
-    };
-}
-
-/// The weightiest finding, which must be certain and of this instrument, and no certain one of any other.
-Finding only_of(std::size_t instrument, const Report& report)
-{
-    const auto isolated = with(report, Certainty::isolated);
-    if (isolated.empty()) {
-        ADD_FAILURE() << "nothing isolated: " << report.sentence;
-        return {};
-    }
-    for (const Finding& finding : isolated) EXPECT_EQ(finding.instrument, instrument) << report.sentence;
-    return isolated.front();
-}
-
-class ADiagnosis : public testing::TestWithParam<std::uint64_t> {
-protected:
-    FieldScene scene{3, GetParam()};
-};
 
 INSTANTIATE_TEST_SUITE_P(Seeds, ADiagnosis, testing::Values(1U, 2U, 3U), [](const auto& its) { return "seed_" + std::to_string(its.param); });
 
@@ -362,42 +331,6 @@ TEST_P(ADiagnosis, of_a_few_samples_says_that_they_are_too_few)
 
     EXPECT_FALSE(report.found_anything());
     EXPECT_THAT(report.sentence, HasSubstr("too little to judge"));
-}
-
-TEST_P(ADiagnosis, with_a_healthy_log_finds_a_small_bias_that_was_there_from_the_first_sample)
-{
-    fdi::Differences differences;
-    differences.drift_deg_s = 0;
-    constexpr std::uint64_t same = 11;
-    const auto in_motion = [](double t) { return FieldScene::flight(t); };
-    FieldScene healthy(3, same, differences);
-    SceneFrames healthy_frames(healthy, length_s);
-    const auto reference = reference_of(survey_of(healthy, length_s), healthy_frames, {});
-    ASSERT_TRUE(reference) << reference.error();
-    Options options;
-    options.reference = *reference;
-
-    FieldScene sound(3, same, differences);
-    sound.motion = in_motion;
-    EXPECT_FALSE(diagnose(sound, length_s, options).found_anything());
-
-    FieldScene faulty(3, same, differences);
-    faulty.motion = in_motion;
-    spoil_axis(faulty, 4, [](double rate) { return rate + 4; }, 0);
-    const Report report = diagnose(faulty, length_s, options);
-    const Finding finding = only_of(1, report);
-    EXPECT_EQ(finding.axis, 1U);
-    EXPECT_NEAR(finding.size, 4, 0.5) << words_of(finding) << " " << report.sentence;
-}
-
-TEST_P(ADiagnosis, refuses_a_faulty_log_as_a_reference)
-{
-    spoil_axis(scene, 4, [](double rate) { return rate + 20; });
-    SceneFrames frames(scene, length_s);
-    const auto reference = reference_of(survey_of(scene, length_s), frames, {});
-
-    ASSERT_FALSE(reference);
-    EXPECT_THAT(reference.error(), HasSubstr("not a healthy log"));
 }
 
 }  // namespace
