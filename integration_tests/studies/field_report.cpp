@@ -101,18 +101,14 @@ void add_fault(const FaultFigures& figures, Report& report, Json& json)
     const double kind = percent(figures, [](const FaultRun& run) { return run.named_kind; });
     const auto protected_s = each(figures, [](const FaultRun& run) { return run.protected_s; });
     const auto latched_s = each(figures, [](const FaultRun& run) { return run.latched_s; });
-    const auto error = each(figures, [](const FaultRun& run) { return run.attitude_error_rad / degree; });
     const auto size = each(figures, [](const FaultRun& run) { return run.size_error.value_or(FaultRun::never_s); });
-    const double px4_right = percent(figures, [](const FaultRun& run) { return std::isfinite(run.px4_s) && !run.px4_wrong; });
-    const double px4_wrong = percent(figures, [](const FaultRun& run) { return run.px4_wrong; });
-    const auto px4_s = each(figures, [](const FaultRun& run) { return run.px4_wrong ? FaultRun::never_s : run.px4_s; });
+    const auto error = each(figures, [](const FaultRun& run) { return run.attitude.at_end_rad / degree; });
     const double size_unit = fault.kind == Diagnosis::bias ? degree : 1;
     fmt::format_to(std::back_inserter(report.text),
-                   "| {} | {} | {:.0f} | {:.1f} | {:.0f} | {} | {} | {} | {} | {:.0f} | {:.0f} | {} | {:.2f} | {:.2f} | {:.0f} | {:.1f} | {} |\n",
+                   "| {} | {} | {:.0f} | {:.1f} | {:.0f} | {} | {} | {} | {} | {:.0f} | {:.0f} | {} | {:.2f} | {:.2f} |\n",
                    fault.name, figures.runs.size(), right, wrong, protects, seconds(quantile(protected_s, 0.5)),
                    seconds(quantile(protected_s, 0.9)), seconds(quantile(latched_s, 0.5)), seconds(quantile(latched_s, 0.9)), axis, kind,
-                   seconds(quantile(size, 0.5) / size_unit), quantile(error, 0.5), quantile(error, 0.9), px4_right, px4_wrong,
-                   seconds(quantile(px4_s, 0.5)));
+                   seconds(quantile(size, 0.5) / size_unit), quantile(error, 0.5), quantile(error, 0.9));
     const auto or_null = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
     json.push_back({{"fault", fault.name},
                     {"trials", figures.runs.size()},
@@ -124,8 +120,58 @@ void add_fault(const FaultFigures& figures, Report& report, Json& json)
                     {"latched_s", {{"median", or_null(quantile(latched_s, 0.5))}, {"p90", or_null(quantile(latched_s, 0.9))}}},
                     {"axis_percent", axis},
                     {"kind_percent", kind},
-                    {"attitude_error_deg", {{"median", quantile(error, 0.5)}, {"p90", quantile(error, 0.9)}}},
-                    {"px4", {{"right_percent", px4_right}, {"wrong_percent", px4_wrong}, {"median_s", or_null(quantile(px4_s, 0.5))}}}});
+                    {"attitude_error_deg", {{"median", quantile(error, 0.5)}, {"p90", quantile(error, 0.9)}}}});
+}
+
+/// Quantiles of the errors of an attitude [deg].
+struct ErrorFigures {
+    double largest, largest_p90, at_end;
+
+    template <class Attitude>
+    ErrorFigures(const FaultFigures& figures, Attitude attitude)
+    {
+        const auto most = each(figures, [&](const FaultRun& run) { return attitude(run).largest_rad / degree; });
+        largest = quantile(most, 0.5);
+        largest_p90 = quantile(most, 0.9);
+        at_end = quantile(each(figures, [&](const FaultRun& run) { return attitude(run).at_end_rad / degree; }), 0.5);
+    }
+
+    std::string text() const { return fmt::format("{:.1f} | {:.1f} | {:.1f}", largest, largest_p90, at_end); }
+    Json json() const { return {{"largest_median", largest}, {"largest_p90", largest_p90}, {"at_end_median", at_end}}; }
+};
+
+void add_beside_peers(const FaultFigures& figures, Report& report, Json& json)
+{
+    const double right = percent(figures, [](const FaultRun& run) { return std::isfinite(run.px4.named_s) && !run.px4.wrong; });
+    const double wrong = percent(figures, [](const FaultRun& run) { return run.px4.wrong; });
+    const double after_s = quantile(each(figures, [](const FaultRun& run) { return run.px4.wrong ? FaultRun::never_s : run.px4.named_s; }), 0.5);
+    const double refuses = percent(figures, [](const FaultRun& run) { return run.ardupilot.refuses; });
+    const ErrorFigures ours(figures, [](const FaultRun& run) { return run.attitude; });
+    const ErrorFigures px4(figures, [](const FaultRun& run) { return run.px4.attitude; });
+    const ErrorFigures ardupilot(figures, [](const FaultRun& run) { return run.ardupilot.attitude; });
+    fmt::format_to(std::back_inserter(report.text), "| {} | {} | {:.0f} | {:.1f} | {} | {} | {:.0f} | {} |\n", figures.fault.name, ours.text(),
+                   right, wrong, seconds(after_s), px4.text(), refuses, ardupilot.text());
+    json.push_back({{"fault", figures.fault.name},
+                    {"quorient", {{"attitude_error_deg", ours.json()}}},
+                    {"px4",
+                     {{"right_percent", right},
+                      {"wrong_percent", wrong},
+                      {"median_s", std::isfinite(after_s) ? Json(after_s) : Json(nullptr)},
+                      {"attitude_error_deg", px4.json()}}},
+                    {"ardupilot", {{"refuses_to_arm_percent", refuses}, {"attitude_error_deg", ardupilot.json()}}}});
+}
+
+void add_peers(const FieldFigures& figures, Report& report)
+{
+    report.text += "\n## Beside the rules of PX4 and ArduPilot\n\n"
+                   "Errors of the attitude in the 20 s after the onset, in degrees: the largest (median, p90 of the trials), and at the end (median). "
+                   "PX4 and ArduPilot fly by the faulty gyro. PX4 changes to a sound one when its rule names it. ArduPilot compares gyros before "
+                   "arming only, in logs that begin at rest.\n\n"
+                   "| fault | Quorient largest | p90 | end | PX4 right % | wrong % | s | largest | p90 | end | ArduPilot refuses to arm % | largest | p90 | end |\n"
+                   "|--|--|--|--|--|--|--|--|--|--|--|--|--|--|\n";
+    Json list = Json::array();
+    for (const FaultFigures& fault : figures.faults) add_beside_peers(fault, report, list);
+    report.json["beside_peers"] = list;
 }
 
 /// What was latched in place of the faulty instrument, and why.
@@ -144,8 +190,8 @@ void add_faults(const FieldFigures& figures, Report& report)
 {
     report.text += "\n## Faults added to the sound logs\n\n"
                    "Right: the faulty instrument latched and no other; of shocks, dropouts and single spikes: nobody latched. Out: left out of the attitude.\n\n"
-                   "| fault | n | right % | wrong % | out % | out s | p90 | latched s | p90 | axis % | kind % | size off by | attitude deg | p90 "
-                   "| PX4 right % | wrong % | s |\n|--|--|--|--|--|--|--|--|--|--|--|--|--|--|--|--|--|\n";
+                   "| fault | n | right % | wrong % | out % | out s | p90 | latched s | p90 | axis % | kind % | size off by | attitude deg | p90 |\n"
+                   "|--|--|--|--|--|--|--|--|--|--|--|--|--|--|\n";
     Json list = Json::array();
     std::size_t trials = 0;
     std::size_t wrong = 0;
@@ -159,6 +205,7 @@ void add_faults(const FieldFigures& figures, Report& report)
         for (const FaultRun& run : fault.runs) add_wrong(run, report);
     report.json["faults"] = list;
     report.json["wrong"] = wrong;
+    add_peers(figures, report);
 }
 
 }  // namespace

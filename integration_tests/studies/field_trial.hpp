@@ -1,5 +1,6 @@
 #pragma once
 
+#include "field_attitude.hpp"
 #include "field_fault.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
 #include "quorient/messages/fault_diagnosis.hpp"
@@ -37,9 +38,22 @@ struct FaultRun {
     bool named_axis = false;       ///< by the diagnosis at the end, and no other of this instrument
     bool named_kind = false;
     std::optional<double> size_error{};  ///< in the unit of the diagnosis, where it named the kind
-    double attitude_error_rad = 0;       ///< at the end, beside an attitude that was made without the fault
-    double px4_s = never_s;
-    bool px4_wrong = false;
+    AttitudeError attitude{};            ///< beside one that was made without the fault
+
+    /// PX4's rule: the faulty gyro named, or else wrong; the attitude where the vehicle flies by that gyro until then.
+    struct Px4 {
+        double named_s = never_s;
+        bool wrong = false;
+        AttitudeError attitude;
+    };
+    Px4 px4{};
+
+    /// ArduPilot's: before arming; the attitude where the vehicle flies by the faulty gyro.
+    struct ArduPilot {
+        bool refuses = false;
+        AttitudeError attitude;
+    };
+    ArduPilot ardupilot{};
 };
 FaultRun play_fault(const FieldLog& log, const Injection& injection, std::uint64_t seed, fdi::FaultMonitor monitor);
 

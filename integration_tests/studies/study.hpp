@@ -45,7 +45,7 @@ Report detection_seeds(const RunSettings& settings, const OnProgress& on_progres
 Report motion_terms(const RunSettings& settings, const OnProgress& on_progress);
 
 /// The field detector on logs of any arrays of triads (settings.logs: sound; settings.faulty_logs), uncalibrated: as they are, and with faults
-/// added to the sound ones, beside PX4's rule.
+/// added to the sound ones, beside the rules of PX4 and ArduPilot and the attitudes that these leave.
 Report field(const RunSettings& settings, const OnProgress& on_progress);
 
 /// What the layout designer finds beside what is known to be best, with the time it takes, and the survey of survival over families.
