@@ -26,7 +26,7 @@ private:
 
 /// How far an attitude is from the one that nothing has spoiled, about any direction [rad].
 struct AttitudeError {
-    double largest_rad = 0;  ///< of what was known at each instant
+    double largest_rad = 0;  ///< as it was known at each instant
     double at_end_rad = 0;
 };
 
