@@ -9,7 +9,8 @@ import subprocess
 import tempfile
 import time
 
-from integration_tests.latency import run
+from integration_tests.latency import graphs
+from integration_tests.latency.usage import Usage
 
 TRANSPORTS = ("UDP, Cyclone DDS", "UDP, Fast DDS")
 START_S = 7  # Fast DDS announces itself ten times a second for five
@@ -28,7 +29,7 @@ def count(commands, rate_hz, environment):
     }
     try:
         time.sleep(START_S)
-        before, usage, begin_s = udp_counters(), run.Usage(processes), time.monotonic()
+        before, usage, begin_s = udp_counters(), Usage(processes), time.monotonic()
         usage.look()
         time.sleep(COUNT_S)
         after = udp_counters()
@@ -56,8 +57,8 @@ def main():
     print("| transport | graph | sent per frame | received per frame | CPU per frame [us] |\n|---|---|---|---|---|")
     for transport in TRANSPORTS:
         case = {"transport": transport, "rate_hz": options.rate}
-        ours = run.our_commands(run.system_file(directory, case, options.domain, 1, seconds), case)
-        for graph, commands in (("ours", ours), ("floor", run.floor_commands(case, options.domain, seconds))):
+        ours = graphs.our_commands(graphs.system_file(directory, case, options.domain, 1, seconds), case)
+        for graph, commands in (("ours", ours), ("floor", graphs.floor_commands(case, options.domain, seconds))):
             sent, received, cpu_us = count(commands, options.rate, environment)
             print(f"| {transport}, {options.rate} Hz | {graph} | {sent:.1f} | {received:.1f} | {cpu_us:.0f} |", flush=True)
     shutil.rmtree(directory)

@@ -10,7 +10,7 @@ import sys
 import threading
 
 from integration_tests.harness.websocket import WebSocket
-from integration_tests.latency import run, table
+from integration_tests.latency import graphs, run, table
 
 CASES = ({"transport": "UDP, Cyclone DDS", "rate_hz": 200}, {"transport": "UDP, Cyclone DDS", "rate_hz": 1000},
          {"transport": "UDP, Cyclone DDS", "rate_hz": 1000, "axes": 24})
@@ -56,10 +56,10 @@ class Viewer(threading.Thread):
 
 def measure(runner, case, seconds, port, monitored):
     domain = runner.domain = runner.next_domain(1)
-    file = run.system_file(runner.directory, case, domain, 1, seconds)
-    commands = run.our_commands(file, case)
+    file = graphs.system_file(runner.directory, case, domain, 1, seconds)
+    commands = graphs.our_commands(file, case)
     if monitored:
-        commands = {"monitor": [run.BIN / "quorient-monitor", file, "--set", f"monitor.port={port}"], **commands}
+        commands = {"monitor": [graphs.BIN / "quorient-monitor", file, "--set", f"monitor.port={port}"], **commands}
     clients = (Reader(port), Viewer(port))
     if monitored:
         for client in clients:

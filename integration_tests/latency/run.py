@@ -17,31 +17,19 @@ import sys
 import tempfile
 import time
 
-from integration_tests.latency import table
+from integration_tests.latency import graphs, table
+from integration_tests.latency.graphs import BIN, LAYOUTS, TRANSPORTS
+from integration_tests.latency.usage import Usage
 
 HERE = pathlib.Path(__file__).resolve().parent
-ROOT = HERE.parent.parent
-BIN = pathlib.Path(os.environ.get("QUORIENT_BIN", ROOT / "build/release/bin"))
-PAGE_MIB = os.sysconf("SC_PAGE_SIZE") / 2**20
 PING_PATIENCE_S = 60  # all rounds of one pair of processes; they take some seconds
 START_PATIENCE_S = 15
 UNITS_SECONDS = 6  # many processes start slowly
 LADDER_SECONDS = 8  # the probe may miss two of them
 LOOK_S = 0.5  # a look at nine processes takes 0.3 to 0.9 ms
-CPUCLOCK_SCHED = 2  # CPU-time clock of a process: MAKE_PROCESS_CPUCLOCK of the kernel's posix-timers.h
 DOMAINS = 16  # used in turns: the one before may still be saying goodbye
 FLOORS = ("floor", "floor_that_waits")
 PROGRAMS = ("quorient-latency-graph", "quorient-latency-probe", "quorient-latency-ping")
-
-# Name -> the keys of the system file for sensor, lanes and voters in turn, and the floor's arguments.
-TRANSPORTS = {
-    "UDP, Cyclone DDS": ([{"dds": "cyclonedds"}], ["--dds", "cyclonedds"]),
-    "UDP, Fast DDS": ([{"dds": "fastdds"}], ["--dds", "fastdds"]),
-    "shared memory, Fast DDS": ([{"dds": "fastdds", "transport": "shm"}], ["--dds", "fastdds", "--shared-memory"]),
-    "iceoryx, Cyclone DDS": ([{"dds": "cyclonedds", "transport": "iceoryx"}], ["--dds", "cyclonedds", "--shared-memory"]),
-    "mixed": ([{"dds": "cyclonedds", "transport": "iceoryx"}, {"dds": "fastdds", "transport": "shm"}, {"dds": "cyclonedds"}], None),
-}
-LAYOUTS = {4: "cone-4", 6: "cone-6", 8: "octahedron-8", 24: "triads-8"}
 PINGS = (("cyclonedds", "udp"), ("fastdds", "udp"), ("fastdds", "shm"), ("cyclonedds", "iceoryx"))
 SPINNING_PINGS = (("cyclonedds", "udp"), ("cyclonedds", "iceoryx"))
 
@@ -73,106 +61,6 @@ class Roudi:
             return probe.connect_ex("/tmp/roudi") == 0
 
 
-def cpu_s(process):
-    """CPU time of all threads of a process, by one call: reading /proc/PID/task takes milliseconds, which would delay the processes."""
-    return time.clock_gettime(~process.pid << 3 | CPUCLOCK_SCHED)
-
-
-class Usage:
-    """CPU and memory of processes, sampled from time to time, and interpolated to any time between two samples."""
-
-    def __init__(self, processes):
-        self.processes = processes
-        self.looks = []
-
-    def look(self):
-        found = {}
-        for name, process in self.processes.items():
-            try:
-                with open(f"/proc/{process.pid}/statm") as pages:
-                    found[name] = (cpu_s(process), int(pages.read().split()[1]) * PAGE_MIB)
-            except (OSError, IndexError):  # it has ended
-                continue
-        self.looks.append((time.monotonic(), found))
-
-    def between(self, begin_s, end_s):
-        """@returns {process: ...} from the first look to the last one in this time; empty where there are not two."""
-        looks = [look for look in self.looks if begin_s <= look[0] <= end_s]
-        if len(looks) < 2:
-            return {}
-        (first_s, first), (last_s, last) = looks[0], looks[-1]
-        return {
-            name: {"cpu_percent": 100 * (cpu - first[name][0]) / (last_s - first_s), "rss_mib": rss}
-            for name, (cpu, rss) in last.items() if name in first
-        }
-
-
-def system_file(directory, case, domain, unit, seconds):
-    keys = TRANSPORTS[case["transport"]][0]
-    at = lambda place: dict(keys[place % len(keys)])  # noqa: E731
-    # A core for every process is more than this machine has: only a lane's own processes spin.
-    common = {"stamps": True, "spin": case.get("spin", False)}
-    axes = case.get("axes", 4)
-    method = {"method": "vector"} if axes == 4 else {}  # the default of the layout
-    system = {
-        "name": "latency", "domain": domain, "interface": "lo", **common,
-        "unit": {"id": unit, "layout": LAYOUTS[axes]},
-        "sensor": at(0),
-        "source": {
-            "motion": {"kind": "coning", "k2": 0.084, "k3": 0.05}, "rate_hz": case["rate_hz"], "duration_s": seconds,
-            "quantum_rad": 0.4848e-6, "quantize": "carry",
-        },
-        "lanes": [{"name": f"l{i}", "detector": method, **at(i)} for i in range(case.get("lanes", 3))],
-        "voters": [{"name": f"voter-{i + 1}", **at(i)} for i in range(case.get("voters", 2))],
-    }
-    path = directory / f"system-{unit}.yaml"
-    path.write_text(json.dumps(system))  # JSON is YAML
-    return path
-
-
-def our_commands(file, case, prefix=""):
-    names = [("quorient-voter", f"voter-{i + 1}") for i in range(case.get("voters", 2))]
-    for i in range(case.get("lanes", 3)):
-        names += [("quorient-attitude", f"attitude-l{i}"), ("quorient-fdi", f"fdi-l{i}")]
-    return {prefix + name: [BIN / program, file, "--name", name] for program, name in [*names, ("quorient-sensor", "sensor")]}
-
-
-def lanes_composed(file, case):
-    """Detector and integrator of each lane in one process."""
-    commands = our_commands(file, case)
-    for i in range(case.get("lanes", 3)):
-        names = [f"fdi-l{i}", f"attitude-l{i}"]
-        for name in names:
-            del commands[name]
-        commands = {"+".join(names): [BIN / "quorient-run", file, *names], **commands}
-    return commands
-
-
-def all_but_sensor_composed(file, case):
-    commands = our_commands(file, case)
-    names = [name for name in commands if name != "sensor"]
-    return {"all but the sensor": [BIN / "quorient-run", file, *names], "sensor": commands["sensor"]}
-
-
-def floor_commands(case, domain, seconds):
-    base = [BIN / "quorient-latency-graph"]
-    lanes, voters = case.get("lanes", 3), case.get("voters", 2)
-    common = [*TRANSPORTS[case["transport"]][1], "--domain", domain, "--lanes", lanes, "--voters", voters]
-    common += ["--spin"] if case.get("spin") else []
-    commands = {f"voter-{i + 1}": [*base, "voter", "--number", i + 1, *common] for i in range(voters)}
-    for i in range(lanes):
-        commands[f"attitude-l{i}"] = [*base, "integrator", "--number", i, *common]
-        commands[f"fdi-l{i}"] = [*base, "detector", "--number", i, *common]
-    commands["sensor"] = [*base, "sensor", *common, "--rate", case["rate_hz"], "--duration", seconds]
-    return commands
-
-
-def probe_command(case, domain, skip):
-    reads_by = TRANSPORTS[case["transport"]][0][0]
-    return [BIN / "quorient-latency-probe", "--dds", reads_by["dds"], "--transport", reads_by.get("transport", "udp"), "--domain", domain, "--skip", skip,
-            "--interval", 1 / case["rate_hz"]]
-
-
 class Runner:
     def __init__(self, options):
         self.options = options
@@ -193,7 +81,7 @@ class Runner:
         environment = dict(os.environ, QUORIENT_RUN_DIR=str(self.directory))
         skip = int(0.2 * seconds * case["rate_hz"])  # caches, branch predictors and the last matches
         start = lambda command, **more: subprocess.Popen(list(map(str, command)), env=environment, **more)  # noqa: E731
-        probe = start(probe_command(case, domain, skip), stdout=subprocess.PIPE, text=True)
+        probe = start(graphs.probe_command(case, domain, skip), stdout=subprocess.PIPE, text=True)
         processes = {name: start(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for name, command in commands.items()}
         sensors = [process for name, process in processes.items() if name.endswith("sensor")]
         units = case.get("units", 1)
@@ -230,21 +118,21 @@ class Runner:
         commands = {}
         for unit in range(1, case.get("units", 1) + 1):
             domain = self.next_domain(unit - 1) if case.get("own_domains") else self.domain
-            file = system_file(self.directory, case, domain, unit, seconds)
-            commands.update(our_commands(file, case, f"{unit}/" if case.get("units", 1) > 1 else ""))
+            file = graphs.system_file(self.directory, case, domain, unit, seconds)
+            commands.update(graphs.our_commands(file, case, f"{unit}/" if case.get("units", 1) > 1 else ""))
         return self.run(commands, self.domain, case, seconds)
 
     def lanes(self, case, seconds):
-        return self.run(lanes_composed(system_file(self.directory, case, self.domain, 1, seconds), case), self.domain, case, seconds)
+        return self.run(graphs.lanes_composed(graphs.system_file(self.directory, case, self.domain, 1, seconds), case), self.domain, case, seconds)
 
     def all_but_sensor(self, case, seconds):
-        return self.run(all_but_sensor_composed(system_file(self.directory, case, self.domain, 1, seconds), case), self.domain, case, seconds)
+        return self.run(graphs.all_but_sensor_composed(graphs.system_file(self.directory, case, self.domain, 1, seconds), case), self.domain, case, seconds)
 
     def floor(self, case, seconds):
-        return self.run(floor_commands(case, self.domain, seconds), self.domain, case, seconds)
+        return self.run(graphs.floor_commands(case, self.domain, seconds), self.domain, case, seconds)
 
     def floor_that_waits(self, case, seconds):
-        commands = {name: [*command, "--waits"] for name, command in floor_commands(case, self.domain, seconds).items()}
+        commands = {name: [*command, "--waits"] for name, command in graphs.floor_commands(case, self.domain, seconds).items()}
         return self.run(commands, self.domain, case, seconds)
 
     def next_domain(self, steps):
