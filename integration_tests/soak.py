@@ -11,6 +11,7 @@ import time
 from integration_tests.harness.judge import disordered, errors, first_judged, gaps, missing_frames
 from integration_tests.harness.pipeline import ALL_LANES, RATE_HZ, NotInTime, Pipeline, ask_for_priority, at_least_once, rate_between
 from integration_tests.harness.resources import memory_and_descriptors
+from integration_tests.harness.steady import Steady
 from integration_tests.harness.streams import SINGLE
 from integration_tests.harness.witness import NoQuietMachine, until_held
 
@@ -26,7 +27,6 @@ FINAL_ERROR_RAD = 1e-5
 LEASE_S = 0.07  # a lease of `voted`, max(50 ms, 3 intervals), and 20 ms
 GROWTH_MIB = 8
 SKIPPED = 77  # as ctest knows it
-STEADY_FRAMES = 60
 FRAMES_TO_TRUST = 10  # an axis must agree with the others in eight frames (fdi::FourAxisDetector::release_frames)
 STANDBY_S = 2.5  # the weaker voter owns nothing before it has heard the stronger one, or for 2 s (voting::VoterSettings::listen_s)
 
@@ -42,19 +42,10 @@ class Soak:
 
     def back(self, isolated):
         """All lanes stand behind both voters' output, with just these axes isolated."""
-        runs = {1: 0, 2: 0}
-        samples = self.pipeline.merged.samples
-        seen = len(samples)
+        def good(sample):
+            return sample.vouching == ALL_LANES and sample.excluded == 0 and sample.level <= SINGLE and sample.isolated == isolated
 
-        def steady():
-            nonlocal seen
-            for sample in samples[seen:len(samples)]:
-                seen += 1
-                good = sample.vouching == ALL_LANES and sample.excluded == 0 and sample.level <= SINGLE and sample.isolated == isolated
-                runs[sample.voter] = runs[sample.voter] + 1 if good else 0
-            return all(run >= STEADY_FRAMES for run in runs.values())
-
-        self.pipeline.until(steady, f"all lanes back with {isolated:#06b} isolated", BACK_WITHIN_S)
+        self.pipeline.until(Steady(self.pipeline.merged.samples, good), f"all lanes back with {isolated:#06b} isolated", BACK_WITHIN_S)
 
     def hit(self, act, victim):
         if act == "stop":

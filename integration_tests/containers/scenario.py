@@ -15,6 +15,7 @@ from typing import Callable
 from integration_tests.containers.containers import Containers
 from integration_tests.containers.observed import Observed
 from integration_tests.harness.judge import disordered, errors, largest_gap, missing_frames
+from integration_tests.harness.steady import STEADY_FRAMES, Steady
 from integration_tests.harness.streams import DEGRADED, FULL
 from integration_tests.containers.trace import steps_text, table
 
@@ -24,7 +25,6 @@ LANE_A, LANE_B = 0b001, 0b010
 VOTER_1_ON_A, FDI_C_ON_B = "198.18.10.41", "198.18.20.23"
 ICEORYX = 4  # Transport in codes.hpp
 TRANSPORT_FALLBACK = 46  # EventCode, likewise
-STEADY_FRAMES = 60
 HARM_S = 4.0  # length of the pause and of the cut: below discovery's lease of 10 s, above the 64 frames (1.28 s) that writers keep
 
 # Bounds and where they come from.
@@ -74,17 +74,7 @@ def stands(sample):
 
 def until_whole(containers, observed, what, timeout_s):
     """Three lanes behind both voters, for a while."""
-    runs, seen = {1: 0, 2: 0}, len(observed.merged)
-
-    def steady():
-        nonlocal seen
-        samples = observed.merged[seen:]
-        seen += len(samples)
-        for sample in samples:
-            runs[sample.voter] = runs[sample.voter] + 1 if stands(sample) else 0
-        return min(runs.values()) >= STEADY_FRAMES
-
-    until(steady, what, timeout_s, containers.prefer)
+    until(Steady(observed.merged, stands), what, timeout_s, containers.prefer)
 
 
 @dataclass

@@ -1,5 +1,5 @@
 """What the observer received around a fault, as a table."""
-from integration_tests.harness.streams import angle
+from integration_tests.harness.quaternion import angle
 
 LEVEL_NAMES = ("starting", "FULL", "DEGRADED", "SINGLE", "COASTING", "LOST")
 BEFORE, AFTER = 2, 16  # frames shown

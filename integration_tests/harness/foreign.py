@@ -1,6 +1,5 @@
 """Foreign nodes for the tests: builds them from the installed IDL alone, starts them, reads what they print."""
 import functools
-import math
 import os
 import pathlib
 import signal
@@ -64,25 +63,6 @@ def consumer(program):
 def node(program):
     """@returns the command that starts a node of integration_tests/interop."""
     return built_elsewhere(f"integration_tests/interop/{program}", program) if NODES_RELEASE else (build(INTEROP / program, program),)
-
-
-def conjugate(q):
-    return [q[0], -q[1], -q[2], -q[3]]
-
-
-def product(p, q):
-    return [
-        p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
-        p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
-        p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1],
-        p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0],
-    ]
-
-
-def angle(p, q):
-    """Between two attitudes [rad]."""
-    w, x, y, z = product(conjugate(p), q)
-    return 2 * math.atan2(math.hypot(x, y, z), abs(w))
 
 
 class InteropTest(ProcessTest):

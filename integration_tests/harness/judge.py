@@ -1,7 +1,8 @@
 """Figures of a run, from the recorded topics and the simulator's truth."""
 from dataclasses import dataclass, field
 
-from integration_tests.harness.streams import HELD, angle
+from integration_tests.harness.quaternion import angle
+from integration_tests.harness.streams import HELD
 
 
 @dataclass

@@ -1,7 +1,6 @@
 """Recordings of a running pipeline's topics, made by `quorient echo` in processes of their own."""
 import fcntl
 import gc
-import math
 import subprocess
 import threading
 import time
@@ -51,15 +50,6 @@ def parse_voted(sample, arrival_s):
         sample["reset_counter"], sample["voter"], sample["vouching_mask"], sample["excluded_mask"], sample["isolated_mask"],
         sample["mode"], sample["level"], arrival_s,
     )
-
-
-def angle(a, b):
-    """Geodesic angle of two quaternions [rad]; by the sine, since the cosine is blind below 1e-8."""
-    w = sum(x * y for x, y in zip(a, b))
-    x = a[0] * b[1] - a[1] * b[0] + a[2] * b[3] - a[3] * b[2]
-    y = a[0] * b[2] - a[2] * b[0] + a[3] * b[1] - a[1] * b[3]
-    z = a[0] * b[3] - a[3] * b[0] + a[1] * b[2] - a[2] * b[1]
-    return 2 * math.atan2(math.sqrt(x * x + y * y + z * z), abs(w))
 
 
 class Recording:

@@ -7,8 +7,9 @@ import unittest
 from statistics import mode
 
 from integration_tests.harness import exact_json
-from integration_tests.harness.foreign import BIN, InteropTest, angle, conjugate, consumer, example, product
+from integration_tests.harness.foreign import BIN, InteropTest, consumer, example
 from integration_tests.harness.processes import CONFIGURATIONS
+from integration_tests.harness.quaternion import angle, conjugate, product
 
 LOGGED = re.compile(r"\d+\.\d+ \[\d+\]\s")  # a line of Cyclone DDS's own log, on the same stream
 LINE = re.compile(r"(\d+) (\d+) (\d+) voter (\d+) level (\d+) mode (\d+) q (\S+) (\S+) (\S+) (\S+) sigma (\S+) rad")

@@ -8,8 +8,9 @@ import subprocess
 import unittest
 
 from integration_tests.harness import exact_json
-from integration_tests.harness.foreign import InteropTest, angle, conjugate, node, product
+from integration_tests.harness.foreign import InteropTest, node
 from integration_tests.harness.processes import CONFIGURATIONS
+from integration_tests.harness.quaternion import angle, conjugate, product
 
 IMU_LINE = re.compile(
     r"(\S+) (\S*) q (\S+) (\S+) (\S+) (\S+) covariance (\S+) rate (\S+) (\S+) (\S+) covariance (\S+) acceleration covariance (\S+)"

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from integration_tests.harness.judge import judge
 from integration_tests.harness.pipeline import ALL_LANES, RATE_HZ, NotInTime, Pipeline, ask_for_priority, at_least_once
+from integration_tests.harness.steady import STEADY_FRAMES, Steady
 from integration_tests.harness.streams import COASTING, HELD, LOST, SINGLE
 
 FAULT_S = 1.5
@@ -15,7 +16,6 @@ ACT_FRAME = FAULT_S * RATE_HZ + 1.5  # the second contaminated frame is on its w
 STOPPED_S = 2.0
 LEASE_FRAMES = 14  # 50 ms lease + 20 ms, at 5 ms a frame
 FINAL_ERROR_RAD = 1e-5
-STEADY_FRAMES = 60
 
 
 class Cell(NamedTuple):
@@ -93,20 +93,7 @@ def await_outcome(pipeline, cell, since):
                 pipeline.kill("sensor")
                 pipeline.until(lambda: pipeline.truth.newest.identity[0] > epoch, "a third epoch")
         return
-    back = restored(cell)
-    runs = dict.fromkeys(voters_left(cell), 0)
-    seen = len(pipeline.merged.samples)
-
-    def steady():
-        nonlocal seen
-        samples = pipeline.merged.samples
-        for sample in samples[seen:len(samples)]:
-            seen += 1
-            if sample.voter in runs:
-                runs[sample.voter] = runs[sample.voter] + 1 if back(sample) else 0
-        return all(run >= STEADY_FRAMES for run in runs.values())
-
-    pipeline.until(steady, "steady again", 10)
+    pipeline.until(Steady(pipeline.merged.samples, restored(cell), voters_left(cell)), "steady again", 10)
 
 
 def run(cell, level="none"):

@@ -10,13 +10,13 @@ from integration_tests.networks.load import Load
 from integration_tests.networks.spread_pipeline import Place, SpreadPipeline
 from integration_tests.harness.judge import Figures, judge
 from integration_tests.harness.pipeline import ALL_LANES, RATE_HZ, NotInTime, ask_for_priority, at_least_once, rate_between
+from integration_tests.harness.steady import Steady
 from integration_tests.harness.streams import DEGRADED, HELD, SINGLE
 
 FAULTY_AXIS = 1
 FINAL_ERROR_RAD = 1e-5
 FAULT_AFTER_S = 0.5  # after the harm begins: the lane that is cut off learns of the fault when the harm is over
 NOTICED_S = 0.5  # after which nothing but DEGRADED is right while a lane is cut off
-STEADY_FRAMES = 60
 LANE_NAMES = "abc"
 LEVEL_NAMES = ("starting", "FULL", "DEGRADED", "SINGLE", "COASTING", "LOST")
 
@@ -107,22 +107,6 @@ def back(sample):
     return sample.vouching == ALL_LANES and sample.excluded == 0 and sample.level <= SINGLE
 
 
-def await_all_lanes(pipeline):
-    """Every lane behind the output of both voters, for a while."""
-    runs = {1: 0, 2: 0}
-    seen = len(pipeline.merged.samples)
-
-    def steady():
-        nonlocal seen
-        samples = pipeline.merged.samples
-        for sample in samples[seen:len(samples)]:
-            seen += 1
-            runs[sample.voter] = runs.get(sample.voter, 0) + 1 if back(sample) else 0
-        return all(run >= STEADY_FRAMES for run in runs.values())
-
-    pipeline.until(steady, "all lanes again behind both voters", 20)
-
-
 def run(cell, rate_hz):
     layout = cell.layout()
     fault_s = layout.begin_s + FAULT_AFTER_S
@@ -137,7 +121,7 @@ def run(cell, rate_hz):
         cell.end(hosts)
         late = None
         try:
-            await_all_lanes(pipeline)
+            pipeline.until(Steady(pipeline.merged.samples, back), "all lanes again behind both voters", 20)
         except NotInTime as problem:
             late = str(problem)
         busy = load.busy()

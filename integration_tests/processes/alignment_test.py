@@ -9,28 +9,11 @@ import unittest
 
 from integration_tests.harness import exact_json
 from integration_tests.harness.processes import CONFIGURATIONS, DATA, ProcessTest
+from integration_tests.harness.quaternion import angle, conjugate, product
 
 RECORDING = DATA / "mimu4444_carlsson/exp_1/data.bin"
 NORMAL, LOST = 2, 5  # AttitudeMode
 FULL, LOST_LEVEL = 1, 5  # VoteLevel
-
-
-def product(p, q):
-    return [
-        p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
-        p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
-        p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1],
-        p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0],
-    ]
-
-
-def conjugate(q):
-    return [q[0], -q[1], -q[2], -q[3]]
-
-
-def angle(p, q):
-    difference = product(conjugate(p), q)
-    return 2 * math.atan2(math.hypot(*difference[1:]), abs(difference[0]))
 
 
 def gravity_in_body(attitude):

@@ -11,6 +11,7 @@ import unittest
 
 from integration_tests.harness import exact_json
 from integration_tests.harness.processes import BIN, CONFIGURATIONS, DATA, ProcessTest
+from integration_tests.harness.quaternion import angle
 
 RECORDING = DATA / "mimu4444_carlsson/exp_1/data.bin"
 OTHER_RECORDING = DATA / "mimu4444_carlsson/exp_2/data.bin"
@@ -30,10 +31,6 @@ lanes:
 voters:
   - name: voter-1
 """
-
-
-def angle(q, p):
-    return 2 * math.acos(min(1.0, abs(sum(a * b for a, b in zip(q, p)))))
 
 
 class SimulatedLog(ProcessTest):
