@@ -46,8 +46,7 @@ TEST(Update, names_equation_and_source_of_every_algorithm)
 TEST(Update, agrees_with_the_worked_rotation_vectors)
 {
     const auto cases = test::reference_cases("rotation_vector");
-    if (!cases) GTEST_SKIP() << "the shared folder with reference/cases.json is absent (QUORIENT_SHARED_DIR)";
-    ASSERT_FALSE(cases->empty());
+    QUORIENT_SKIP_WITHOUT(cases);
     for (const auto& one : *cases) {
         std::vector<Sample> block;
         for (const auto& row : one["input"]["increments"])
@@ -64,8 +63,7 @@ TEST(Update, agrees_with_the_worked_rotation_vectors)
 TEST(Update, agrees_with_the_worked_drifts)
 {
     const auto cases = test::reference_cases("coning_drift");
-    if (!cases) GTEST_SKIP() << "the shared folder with reference/cases.json is absent (QUORIENT_SHARED_DIR)";
-    ASSERT_FALSE(cases->empty());
+    QUORIENT_SKIP_WITHOUT(cases);
     const std::array<std::string, 5> algorithm{"", "single", "two-sample", "three-sample", "four-sample"};
     for (const auto& one : *cases) {
         const auto& input = one["input"];
@@ -82,8 +80,7 @@ TEST(Update, agrees_with_the_worked_drifts)
 TEST(PaperMotion, has_the_increments_and_the_turn_of_the_worked_kinematics)
 {
     const auto cases = test::reference_cases("kinematics");
-    if (!cases) GTEST_SKIP() << "the shared folder with reference/cases.json is absent (QUORIENT_SHARED_DIR)";
-    ASSERT_FALSE(cases->empty());
+    QUORIENT_SKIP_WITHOUT(cases);
     for (const auto& one : *cases) {
         const auto& input = one["input"];
         const PaperMotion motion(input["k2"], input["k3"]);

@@ -31,7 +31,7 @@ TEST(FourAxisReference, triads_and_parity_match_the_worked_cases)
 {
     const auto cases = reference_cases("triads");
     QUORIENT_SKIP_WITHOUT(cases);
-    for (const auto& entry : cases) {
+    for (const auto& entry : *cases) {
         SCOPED_TRACE(entry["id"].get<std::string>());
         const auto detector = ExtrapolationDetector::make({.tolerance = 1.0}, cluster_of(entry["input"]["H"])).value();
         const auto& q = entry["input"]["quasi_coordinates"];
@@ -51,7 +51,7 @@ TEST(FourAxisReference, the_coning_model_of_these_tests_matches_the_worked_cases
 {
     const auto cases = reference_cases("kinematics");
     QUORIENT_SKIP_WITHOUT(cases);
-    for (const auto& entry : cases) {
+    for (const auto& entry : *cases) {
         SCOPED_TRACE(entry["id"].get<std::string>());
         const auto& in = entry["input"];
         const ConingModel motion{.k2 = in["k2"], .k3 = in["k3"], .mu = in["mu"], .nu = in["nu"]};
@@ -69,7 +69,7 @@ TEST(FourAxisReference, the_predictor_matches_the_worked_cases)
 {
     const auto cases = reference_cases("prony");
     QUORIENT_SKIP_WITHOUT(cases);
-    for (const auto& entry : cases) {
+    for (const auto& entry : *cases) {
         SCOPED_TRACE(entry["id"].get<std::string>());
         const auto moduli = entry["input"]["theta_nm4_to_nm1"].get<std::array<double, 4>>();
         const auto& expected = entry["expected"];
@@ -133,7 +133,7 @@ TEST(FourAxisReference, tables_match_the_worked_cases)
     const auto cases = reference_cases("table003");
     QUORIENT_SKIP_WITHOUT(cases);
     const std::map<std::string, std::string> layout_of{{"3+1", "orthogonal-3-plus-1"}, {"cone4", "cone-4"}, {"cone3a", "cone-3-axis"}};
-    for (const auto& entry : cases) {
+    for (const auto& entry : *cases) {
         const auto& in = entry["input"];
         const auto cluster = geometry::layout(layout_of.at(in["config"])).value();
         const ConingModel motion{.k2 = in["k2"], .k3 = in["k3"]};

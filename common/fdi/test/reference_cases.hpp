@@ -1,30 +1,13 @@
 #pragma once
 
+#include "../../geometry/test/reference_cases.hpp"
 #include "test_clusters.hpp"
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 namespace quorient::fdi {
 
-/// The worked cases of one family, or none where the reference folder is absent.
-inline std::vector<nlohmann::json> reference_cases(const std::string& family)
-{
-    const char* shared = std::getenv("QUORIENT_SHARED_DIR");
-    const std::filesystem::path folder =
-        shared != nullptr ? std::filesystem::path(shared) : std::filesystem::path(QUORIENT_SOURCE_DIR) / ".." / "shared";
-    std::ifstream file(folder / "reference" / "cases.json");
-    std::vector<nlohmann::json> found;
-    if (!file) return found;
-    const auto all = nlohmann::json::parse(file);
-    for (const auto& entry : all["cases"])
-        if (entry["method"] == family) found.push_back(entry);
-    return found;
-}
+using quorient::test::reference_cases;
 
 inline geometry::SensorCluster cluster_of(const nlohmann::json& rows)
 {
@@ -44,6 +27,3 @@ inline AxisMask mask_of(const nlohmann::json& sensors)
 }
 
 }  // namespace quorient::fdi
-
-#define QUORIENT_SKIP_WITHOUT(cases) \
-    if ((cases).empty()) GTEST_SKIP() << "no reference cases: set QUORIENT_SHARED_DIR to the folder that holds reference/cases.json"

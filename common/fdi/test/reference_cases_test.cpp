@@ -74,7 +74,7 @@ TEST(ReferenceCases, guaranteed_estimates_agree_with_180_linear_programs)
 {
     const auto cases = reference_cases("guaranteed");
     QUORIENT_SKIP_WITHOUT(cases);
-    for (const auto& entry : cases) {
+    for (const auto& entry : *cases) {
         SCOPED_TRACE(entry["id"].get<std::string>());
         expect_guaranteed(entry);
     }
@@ -84,7 +84,7 @@ TEST(ReferenceCases, guaranteed_directions_agree_with_linear_programs)
 {
     const auto cases = reference_cases("guaranteed_dir");
     QUORIENT_SKIP_WITHOUT(cases);
-    for (const auto& entry : cases) {
+    for (const auto& entry : *cases) {
         SCOPED_TRACE(entry["id"].get<std::string>());
         const auto& input = entry["input"];
         const auto detector = guaranteed_for(input, 10);
@@ -141,7 +141,7 @@ TEST(ReferenceCases, invariants_voting_and_mean_decide_as_the_independent_comput
 {
     const auto cases = reference_cases("voting_invariants_mean");
     QUORIENT_SKIP_WITHOUT(cases);
-    for (const auto& entry : cases) {
+    for (const auto& entry : *cases) {
         SCOPED_TRACE(entry["id"].get<std::string>());
         const auto& input = entry["input"];
         const auto& expected = entry["expected"];
@@ -176,7 +176,7 @@ TEST(ReferenceCases, one_likelihood_ratio_core_gives_potter_suman_and_glr)
 {
     const auto cases = reference_cases("potter_suman_glr");
     QUORIENT_SKIP_WITHOUT(cases);
-    for (const auto& entry : cases) {
+    for (const auto& entry : *cases) {
         SCOPED_TRACE(entry["id"].get<std::string>());
         const auto& input = entry["input"];
         const auto& expected = entry["expected"];

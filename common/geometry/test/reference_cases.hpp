@@ -2,6 +2,7 @@
 
 #include "quorient/geometry/sensor_cluster.hpp"
 
+#include <gtest/gtest.h>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -43,3 +44,10 @@ inline geometry::AxisVector vector_of(const nlohmann::json& list)
 }
 
 }  // namespace quorient::test
+
+/// Skips a test where reference_cases() found no file, and fails it where the file has none of that method.
+#define QUORIENT_SKIP_WITHOUT(cases)                                                                                                    \
+    do {                                                                                                                                \
+        if (!(cases)) GTEST_SKIP() << "no reference cases: set QUORIENT_SHARED_DIR to the folder that holds reference/cases.json";     \
+        ASSERT_FALSE((cases)->empty());                                                                                                 \
+    } while (false)

@@ -81,9 +81,9 @@ TEST(Motion, keeps_a_unit_quaternion)
 
 TEST(Motion, agrees_with_the_worked_cases_of_paper_003)
 {
-    const auto cases = reference_cases("kinematics");
-    if (cases.empty()) GTEST_SKIP() << "no reference/cases.json under " << shared_dir();
-    for (const auto& one : cases) {
+    const auto cases = test::reference_cases("kinematics");
+    QUORIENT_SKIP_WITHOUT(cases);
+    for (const auto& one : *cases) {
         const auto& in = one["input"];
         const auto& expected = one["expected"];
         const double tolerance = one["tol"]["abs"];
@@ -120,9 +120,9 @@ double drift(const Motion& motion, double h, double duration, int samples)
 
 TEST(Motion, makes_simple_algorithms_drift_as_published)
 {
-    const auto cases = reference_cases("coning_drift");
-    if (cases.empty()) GTEST_SKIP() << "no reference/cases.json under " << shared_dir();
-    for (const auto& one : cases) {
+    const auto cases = test::reference_cases("coning_drift");
+    QUORIENT_SKIP_WITHOUT(cases);
+    for (const auto& one : *cases) {
         const auto& in = one["input"];
         const std::string model = in["model"];
         const Motion motion =

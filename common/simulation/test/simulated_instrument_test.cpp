@@ -145,7 +145,9 @@ TEST(SimulatedInstrument, reproduces_the_tables_of_paper_003)
     const Eigen::Vector3d printed3(.0078168378, .0081347854, .0097748732);  // the fourth is a misprint (docs/methods/four_axes.md)
     EXPECT_LT((cone3.head<3>() - printed3).lpNorm<Eigen::Infinity>(), 1e-10);
 
-    for (const auto& one : reference_cases("table003")) {
+    const auto cases = test::reference_cases("table003");
+    QUORIENT_SKIP_WITHOUT(cases);
+    for (const auto& one : *cases) {
         ASSERT_EQ(one["input"]["config"], "cone3a");
         for (std::size_t i = 0; i < 4; ++i)
             EXPECT_NEAR(cone3(static_cast<Eigen::Index>(i)), one["expected"]["moduli"][i].get<double>(), one["tol"]["abs"].get<double>());

@@ -1,10 +1,9 @@
 #include "quorient/simulation/vessel.hpp"
 
+#include "reference_cases.hpp"
+
 #include <gtest/gtest.h>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
+#include <cmath>
 
 using namespace quorient;
 using namespace quorient::simulation;
@@ -31,14 +30,10 @@ TEST(Vessel, has_the_matrices_of_the_printed_coefficients)
 
 TEST(Vessel, moves_as_in_the_reference_run)
 {
-    const char* shared = std::getenv("QUORIENT_SHARED_DIR");
-    const auto folder = shared != nullptr ? std::filesystem::path(shared) : std::filesystem::path(QUORIENT_SOURCE_DIR) / ".." / "shared";
-    std::ifstream file(folder / "reference" / "cases.json");
-    if (!file) GTEST_SKIP() << "no reference cases; set QUORIENT_SHARED_DIR";
+    const auto cases = test::reference_cases("vessel_sim");
+    QUORIENT_SKIP_WITHOUT(cases);
     std::size_t compared = 0;
-    const auto reference = nlohmann::json::parse(file);
-    for (const auto& entry : reference["cases"]) {
-        if (entry["method"] != "vessel_sim") continue;
+    for (const auto& entry : *cases) {
         SimulatedVessel vessel(paper_scenario());
         SensorFrame frame;
         Eigen::VectorXd state;
