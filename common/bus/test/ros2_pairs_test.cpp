@@ -1,12 +1,10 @@
 // The ROS 2 types, written by either vendor and read by either, in both of ROS 2's profiles.
 
-#include "quorient/bus/bus.hpp"
+#include "pairs_scene.hpp"
 #include "quorient/bus/ros2.hpp"
 #include "quorient/messages/fields.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
-#include <chrono>
 #include <cstring>
 #include <tuple>
 
@@ -14,8 +12,6 @@ namespace quorient::bus {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-constexpr auto patience = std::chrono::seconds{20};
 constexpr Qos sensor_data{.reliable = false, .depth = 5};
 constexpr Qos default_profile{.reliable = true, .depth = 10};
 
@@ -24,28 +20,6 @@ void set(Name<Size>& name, const char* text)
 {
     name.fill('\0');
     std::strncpy(name.data(), text, Size - 1);
-}
-
-std::unique_ptr<Bus> open_on_loopback(Vendor vendor)
-{
-    Settings settings;
-    settings.vendor = vendor;
-    settings.domain = 100 + static_cast<std::uint32_t>(::getpid() % 100);
-    settings.participant = "test";
-    auto bus = open(settings);
-    if (!bus) throw Error(bus.error());
-    return std::move(*bus);
-}
-
-template <class Condition>
-bool eventually(Bus& bus, Condition condition)
-{
-    const auto deadline = Clock::now() + patience;
-    while (!condition()) {
-        if (Clock::now() > deadline) return false;
-        bus.wait(5'000'000);
-    }
-    return true;
 }
 
 ros2::Imu some_imu()

@@ -1,6 +1,6 @@
 // Every type, written by either vendor and read by either, field by field.
 
-#include "quorient/bus/bus.hpp"
+#include "pairs_scene.hpp"
 #include "random_message.hpp"
 
 #include <gtest/gtest.h>
@@ -13,30 +13,6 @@ namespace quorient::bus {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr auto patience = std::chrono::seconds{20};
-
-std::unique_ptr<Bus> open_on_loopback(Vendor vendor)
-{
-    Settings settings;
-    settings.vendor = vendor;
-    settings.domain = 100 + static_cast<std::uint32_t>(::getpid() % 100);
-    settings.participant = "test";
-    auto bus = open(settings);
-    if (!bus) throw Error(bus.error());
-    return std::move(*bus);
-}
-
-/// Polls until the condition holds; waits on the bus, not on the clock.
-template <class Condition>
-bool eventually(Bus& bus, Condition condition)
-{
-    const auto deadline = Clock::now() + patience;
-    while (!condition()) {
-        if (Clock::now() > deadline) return false;
-        bus.wait(5'000'000);
-    }
-    return true;
-}
 
 class VendorPairs : public testing::TestWithParam<std::tuple<Vendor, Vendor>> {};
 

@@ -1,7 +1,6 @@
 // An endpoint may listen elsewhere than its node says: Fast DDS 2.9.1 as packaged aborts the process that first sends there.
 
-#include "../src/types.hpp"
-#include "../src/version.hpp"
+#include "plain_node.hpp"
 #include "quorient/bus/bus.hpp"
 #include "quorient/bus/fastdds_bus.hpp"
 #include "quorient/bus/topics.hpp"
@@ -9,8 +8,6 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 #include <chrono>
-#include <fastdds/dds/domain/DomainParticipant.hpp>
-#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
@@ -21,43 +18,24 @@ namespace quorient::bus {
 namespace {
 
 namespace dds = fastdds::dds;
-namespace rtps = fastdds::rtps;
 namespace wire = fastdds::wire;
 
 /// A plain node of the vendor on loopback, whose reader of frames listens at addresses that its participant does not announce.
 class ForeignReader {
 public:
-    ForeignReader(std::uint32_t domain, std::uint32_t own_port, std::uint32_t shared_port)
-        : type_(fastdds::type_support_of(topics::frame.spec.type))
+    ForeignReader(std::uint32_t domain, std::uint32_t own_port, std::uint32_t shared_port) : node_(domain, topics::frame.spec)
     {
-        dds::DomainParticipantQos node;
-        node.transport().use_builtin_transports = false;
-        const auto udp = std::make_shared<rtps::UDPv4TransportDescriptor>();
-        udp->interfaceWhiteList = {"127.0.0.1"};
-        node.transport().user_transports.push_back(udp);
-        participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(domain, node);
-        type_.register_type(participant_);
-        auto* topic = participant_->create_topic(topics::frame.spec.name, type_.get_type_name(), dds::TOPIC_QOS_DEFAULT);
         dds::DataReaderQos qos;
         qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
         qos.endpoint().unicast_locator_list.push_back(address("127.0.0.1", own_port));
         qos.endpoint().multicast_locator_list.push_back(address("239.255.0.7", shared_port));
-        reader_ = participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT)->create_datareader(topic, qos);
-        sample_ = type_.create_data();
+        reader_ = node_.participant().create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT)->create_datareader(node_.topic(), qos);
     }
-    ~ForeignReader()
-    {
-        type_.delete_data(sample_);
-        participant_->delete_contained_entities();
-        dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
-    }
-    ForeignReader(const ForeignReader&) = delete;
-    ForeignReader& operator=(const ForeignReader&) = delete;
 
     bool take()
     {
         dds::SampleInfo info;
-        return fastdds::is_ok(reader_->take_next_sample(sample_, &info)) && info.valid_data;
+        return fastdds::is_ok(reader_->take_next_sample(node_.sample(), &info)) && info.valid_data;
     }
 
 private:
@@ -69,10 +47,8 @@ private:
         return locator;
     }
 
-    dds::TypeSupport type_;
-    dds::DomainParticipant* participant_ = nullptr;
+    fastdds::PlainNode node_;
     dds::DataReader* reader_ = nullptr;
-    void* sample_ = nullptr;
 };
 
 TEST(ForeignAddress, of_readers_that_their_nodes_did_not_announce_ends_nobody_and_is_served)
