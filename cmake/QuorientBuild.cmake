@@ -59,7 +59,7 @@ function(quorient_precompiled name)
     return()
   endif()
   cmake_parse_arguments(arg "" "" "HEADERS;DEPENDS;OPTIONS" ${ARGN})
-  file(WRITE ${CMAKE_BINARY_DIR}/precompiled/${name}.cpp "")
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/precompiled/${name}.cpp CONTENT "\n")  # written once: a new time would compile it again
   add_library(precompiled_${name} OBJECT ${CMAKE_BINARY_DIR}/precompiled/${name}.cpp)
   target_compile_options(precompiled_${name} PRIVATE ${arg_OPTIONS})
   target_link_libraries(precompiled_${name} PRIVATE ${arg_DEPENDS} quorient_warnings)
