@@ -1,28 +1,13 @@
 #pragma once
 
-#include "field_trial.hpp"
+#include "field_figures.hpp"
 #include "study.hpp"
 
 #include "quorient/fdi/sensor_class.hpp"
-#include "quorient/messages/cluster_description.hpp"
 
-#include <string>
 #include <vector>
 
 namespace quorient::studies {
-
-struct LogFigures {
-    std::string name;
-    std::size_t instruments = 0;
-    double duration_s = 0;
-    ClusterDescription description;
-    SoundRun run;
-};
-
-struct FaultFigures {
-    FieldFault fault;
-    std::vector<FaultRun> runs;
-};
 
 /// Everything that the study `field` measured.
 struct FieldFigures {

@@ -40,6 +40,7 @@ constexpr Study all_studies[] = {
     {"motion-terms", "the terms of that noise from each recording alone, and the other one played with them", motion_terms_trials,
      motion_terms, Study::Logs::of_one_array},
     {"field", "the field detector on logs of any arrays, uncalibrated: as they are, and with faults added", field_trials, field, Study::Logs::any},
+    {"field-ablation", "the same with one rule of the detector off at a time", field_ablation_trials, field_ablation, Study::Logs::any},
 };
 
 struct Options {

@@ -48,6 +48,9 @@ Report motion_terms(const RunSettings& settings, const OnProgress& on_progress);
 /// added to the sound ones, beside the rules of PX4 and ArduPilot and the attitudes that these leave.
 Report field(const RunSettings& settings, const OnProgress& on_progress);
 
+/// The same with one rule of the detector switched off at a time: whom it blames then, and what it no longer finds.
+Report field_ablation(const RunSettings& settings, const OnProgress& on_progress);
+
 /// What the layout designer finds beside what is known to be best, with the time it takes, and the survey of survival over families.
 Report array_design(const RunSettings& settings, const OnProgress& on_progress);
 
@@ -60,6 +63,7 @@ inline constexpr std::uint64_t motion_noise_trials = 30;
 inline constexpr std::uint64_t detection_seeds_trials = 60;  // with each seed
 inline constexpr std::uint64_t motion_terms_trials = 60;
 inline constexpr std::uint64_t field_trials = 4;  // each fault in each log
+inline constexpr std::uint64_t field_ablation_trials = 2;
 inline constexpr std::uint64_t array_design_trials = 4000;
 
 }  // namespace quorient::studies
