@@ -1,5 +1,6 @@
 #include "quorient/recording/merge.hpp"
 
+#include "add_statistics.hpp"
 #include "aligned_reader.hpp"
 #include "mcap/record_parts.hpp"
 #include "readers.hpp"
@@ -173,18 +174,7 @@ private:
     void add_up()
     {
         statistics_ = leader_->statistics();
-        for (const Follower& follower : followers_) {
-            const Statistics& other = follower.reader().statistics();
-            statistics_.records += other.records;
-            statistics_.checksum_failures += other.checksum_failures;
-            statistics_.malformed += other.malformed;
-            statistics_.lost += other.lost;
-            statistics_.nan += other.nan;
-            statistics_.repeated += other.repeated;
-            statistics_.irregular += other.irregular;
-            statistics_.skipped_bytes += other.skipped_bytes;
-            statistics_.truncated_bytes += other.truncated_bytes;
-        }
+        for (const Follower& follower : followers_) add(statistics_, follower.reader().statistics());
         statistics_.frames = frames_;
         statistics_.incomplete = incomplete_;
     }

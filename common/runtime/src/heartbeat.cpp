@@ -21,7 +21,8 @@ namespace {
 constexpr const char* extension = ".heartbeat";
 constexpr std::size_t beat_length = 42;  // two numbers of 20 digits, a blank and the line's end
 
-/// One process is part of one system.
+/// The system of this process. A process is part of one system, also when it runs several of its services, and the file of a heartbeat
+/// is found by this name from outside. So it is set once, when the system file has been read, before any service opens its heartbeat.
 HeartbeatOwner& owner()
 {
     static HeartbeatOwner of_this_process;

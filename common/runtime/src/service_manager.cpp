@@ -34,33 +34,40 @@ std::int64_t watchdog_ns()
 
 }  // namespace
 
-/// One service of this process, as far as the manager is concerned.
+/// One service, as far as the manager is concerned.
 struct ServiceManager::Service {
     bool ready = false;
     bool handled = false;  ///< a frame, since the watchdog was fed last
 
-    static std::vector<std::weak_ptr<Service>>& all()
+    struct Process;
+};
+
+/// All services of this process, and its watchdog. There is one per process, since the service manager counts processes: READY=1 and
+/// WATCHDOG=1 stand for all services of the process that sends them, and $NOTIFY_SOCKET is the process's as well. One thread, so no lock.
+struct ServiceManager::Service::Process {
+    std::vector<std::weak_ptr<Service>> services;
+    std::int64_t fed_ns = 0;
+
+    static Process& of_this()
     {
-        static std::vector<std::weak_ptr<Service>> services;
-        return services;
+        static Process process;
+        return process;
     }
 
     /// Whether it holds for each service that is there.
-    static bool each(bool Service::*state)
+    bool each(bool Service::*state) const
     {
-        return std::ranges::all_of(all(), [state](const auto& known) {
+        return std::ranges::all_of(services, [state](const auto& known) {
             const auto service = known.lock();
             return !service || (*service).*state;
         });
     }
 
-    static void forget_handled()
+    void forget_handled()
     {
-        for (const auto& known : all())
+        for (const auto& known : services)
             if (const auto service = known.lock()) service->handled = false;
     }
-
-    static inline std::int64_t fed_ns = 0;
 };
 
 std::optional<ServiceManager> ServiceManager::from_environment()
@@ -82,7 +89,7 @@ std::optional<ServiceManager> ServiceManager::from_environment()
 ServiceManager::ServiceManager(int socket, std::int64_t watchdog_ns)
     : socket_(socket), watchdog_ns_(watchdog_ns), service_(std::make_shared<Service>())
 {
-    Service::all().push_back(service_);
+    Service::Process::of_this().services.push_back(service_);
 }
 
 ServiceManager::~ServiceManager()
@@ -106,7 +113,7 @@ ServiceManager& ServiceManager::operator=(ServiceManager&& other) noexcept
 void ServiceManager::ready()
 {
     if (std::exchange(service_->ready, true)) return;
-    if (Service::each(&Service::ready)) send("READY=1");
+    if (Service::Process::of_this().each(&Service::ready)) send("READY=1");
 }
 
 void ServiceManager::stopping()
@@ -117,10 +124,11 @@ void ServiceManager::stopping()
 void ServiceManager::frame_handled(std::int64_t steady_ns)
 {
     service_->handled = true;
-    if (watchdog_ns_ <= 0 || steady_ns - Service::fed_ns < std::min(watchdog_ns_ / 2, longest_feeding_ns)) return;
-    if (!Service::each(&Service::handled)) return;
-    Service::forget_handled();
-    Service::fed_ns = steady_ns;
+    auto& process = Service::Process::of_this();
+    if (watchdog_ns_ <= 0 || steady_ns - process.fed_ns < std::min(watchdog_ns_ / 2, longest_feeding_ns)) return;
+    if (!process.each(&Service::handled)) return;
+    process.forget_handled();
+    process.fed_ns = steady_ns;
     send("WATCHDOG=1");
 }
 

@@ -1,6 +1,6 @@
 // What a publisher that is not ours may do wrong is named, once, in words that tell its author what to change.
 
-#include "quorient/messages/meaning.hpp"
+#include "four_gyros.hpp"
 #include "quorient/runtime/intake_report.hpp"
 
 #include <gmock/gmock.h>
@@ -10,42 +10,14 @@ namespace quorient::runtime {
 
 namespace {
 
+using namespace test;
 using Fault = FrameIntake::Fault;
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr std::uint32_t unit = 7;
-constexpr std::int64_t interval_ns = 5'000'000;
-
-ClusterDescription description(std::uint64_t epoch, std::uint32_t revision = 1)
-{
-    ClusterDescription described;
-    described.epoch = epoch;
-    described.revision = revision;
-    described.unit = unit;
-    described.kind = octet(SensorKind::gyro);
-    described.axis_count = 4;
-    described.interval_s = 0.005;
-    return described;
-}
-
 class ForeignPublisher : public testing::Test {
 protected:
-    /// A frame as it should be, at its time.
-    SensorFrame frame(std::uint64_t sequence) const
-    {
-        SensorFrame made;
-        made.epoch = 1;
-        made.sequence = sequence;
-        made.sample_time_ns = static_cast<std::int64_t>(sequence + 1) * interval_ns;
-        made.interval_s = 0.005;
-        made.unit = unit;
-        made.kind = octet(SensorKind::gyro);
-        made.axis_count = 4;
-        made.valid_mask = all_axes(4);
-        made.description_revision = 1;
-        return made;
-    }
+    static SensorFrame frame(std::uint64_t sequence) { return test::frame(1, sequence); }
 
     bool passes(const SensorFrame& offered)
     {

@@ -1,4 +1,4 @@
-#include "quorient/messages/meaning.hpp"
+#include "four_gyros.hpp"
 #include "quorient/runtime/frame_intake.hpp"
 
 #include <gtest/gtest.h>
@@ -8,41 +8,20 @@ namespace quorient::runtime {
 
 namespace {
 
-constexpr std::uint32_t unit = 7;
-constexpr std::int64_t interval_ns = 5'000'000;
+using namespace test;
+
 constexpr std::int64_t second_ns = 1'000'000'000;
 
-ClusterDescription description(std::uint64_t epoch)
+ClusterDescription ranged(std::uint64_t epoch)
 {
-    ClusterDescription described;
-    described.epoch = epoch;
-    described.revision = 1;
-    described.unit = unit;
-    described.kind = octet(SensorKind::gyro);
-    described.axis_count = 4;
-    described.interval_s = 0.005;
+    ClusterDescription described = description(epoch);
     described.range.fill(10);
     return described;
 }
 
-SensorFrame frame(std::uint64_t epoch, std::uint64_t sequence)
-{
-    SensorFrame made;
-    made.epoch = epoch;
-    made.sequence = sequence;
-    made.sample_time_ns = static_cast<std::int64_t>(sequence + 1) * interval_ns;
-    made.interval_s = 0.005;
-    made.unit = unit;
-    made.kind = octet(SensorKind::gyro);
-    made.axis_count = 4;
-    made.valid_mask = all_axes(4);
-    made.description_revision = 1;
-    return made;
-}
-
 class Intake : public testing::Test {
 protected:
-    Intake() : intake(unit, SensorKind::gyro) { intake.describe(description(1)); }
+    Intake() : intake(unit, SensorKind::gyro) { intake.describe(ranged(1)); }
 
     /// Offers at the time that the sequence stands for. @returns whether it came through.
     bool passes(const SensorFrame& offered, std::int64_t now_ns)
@@ -68,7 +47,7 @@ TEST_F(Intake, passes_what_is_new_and_in_order)
 
 TEST_F(Intake, takes_two_channels_of_a_vessel_and_refuses_two_axes_in_space)
 {
-    ClusterDescription two = description(1);
+    ClusterDescription two = ranged(1);
     two.axis_count = 2;
     EXPECT_NE(FrameIntake::problem_of(two), nullptr);
     two.kind = octet(SensorKind::vessel_rates);
@@ -101,7 +80,7 @@ TEST_F(Intake, ignores_another_unit_and_another_kind)
 
 TEST_F(Intake, holds_a_second_publisher_off_while_the_first_one_sends)
 {
-    intake.describe(description(2));
+    intake.describe(ranged(2));
     EXPECT_TRUE(passes(frame(1, 0), 0));
     EXPECT_FALSE(passes(frame(2, 0), interval_ns));
     EXPECT_TRUE(passes(frame(1, 1), 2 * interval_ns));
@@ -111,7 +90,7 @@ TEST_F(Intake, holds_a_second_publisher_off_while_the_first_one_sends)
 
 TEST_F(Intake, accepts_a_newer_epoch_once_the_old_one_is_silent)
 {
-    intake.describe(description(2));
+    intake.describe(ranged(2));
     EXPECT_TRUE(passes(frame(1, 0), 0));
     EXPECT_TRUE(passes(frame(2, 0), second_ns));
     EXPECT_TRUE(last.new_epoch);
@@ -121,7 +100,7 @@ TEST_F(Intake, accepts_a_newer_epoch_once_the_old_one_is_silent)
 
 TEST_F(Intake, never_goes_back_to_an_older_epoch)
 {
-    intake.describe(description(2));
+    intake.describe(ranged(2));
     EXPECT_TRUE(passes(frame(2, 0), 0));
     EXPECT_FALSE(passes(frame(1, 0), 10 * second_ns));
 }
@@ -131,7 +110,7 @@ TEST_F(Intake, keeps_frames_until_their_description_comes)
     FrameIntake undescribed{unit, SensorKind::gyro};
     for (std::uint64_t sequence = 0; sequence < 3; ++sequence) undescribed.offer(frame(1, sequence), 0);
     EXPECT_EQ(undescribed.next(), nullptr);
-    undescribed.describe(description(1));
+    undescribed.describe(ranged(1));
     for (std::uint64_t sequence = 0; sequence < 3; ++sequence) {
         const auto* accepted = undescribed.next();
         ASSERT_NE(accepted, nullptr);
@@ -143,7 +122,7 @@ TEST_F(Intake, gives_up_the_oldest_of_more_frames_than_it_can_keep)
 {
     FrameIntake undescribed{unit, SensorKind::gyro};
     for (std::uint64_t sequence = 0; sequence < 70; ++sequence) undescribed.offer(frame(1, sequence), 0);
-    undescribed.describe(description(1));
+    undescribed.describe(ranged(1));
     EXPECT_EQ(undescribed.next()->frame.sequence, 6U);
     EXPECT_EQ(undescribed.counters().waiting_lost, 6U);
 }
@@ -198,7 +177,7 @@ TEST_F(Intake, refuses_frames_with_a_wrong_axis_count_interval_or_time)
 TEST_F(Intake, does_not_take_a_foreign_description_for_its_own)
 {
     EXPECT_TRUE(passes(frame(1, 0)));
-    auto foreign = description(2);
+    auto foreign = ranged(2);
     foreign.axis_count = 6;
     intake.describe(foreign);
     EXPECT_TRUE(passes(frame(1, 1)));

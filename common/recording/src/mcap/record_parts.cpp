@@ -1,5 +1,6 @@
 #include "record_parts.hpp"
 
+#include "add_statistics.hpp"
 #include "open_input.hpp"
 
 #include <algorithm>
@@ -57,20 +58,7 @@ private:
     {
         const std::int64_t duration_ns = statistics_.duration_ns;
         statistics_ = {};
-        for (const auto& part : parts_) {
-            const Statistics& other = part->statistics();
-            statistics_.records += other.records;
-            statistics_.frames += other.frames;
-            statistics_.checksum_failures += other.checksum_failures;
-            statistics_.malformed += other.malformed;
-            statistics_.lost += other.lost;
-            statistics_.nan += other.nan;
-            statistics_.incomplete += other.incomplete;
-            statistics_.repeated += other.repeated;
-            statistics_.irregular += other.irregular;
-            statistics_.skipped_bytes += other.skipped_bytes;
-            statistics_.truncated_bytes += other.truncated_bytes;
-        }
+        for (const auto& part : parts_) add(statistics_, part->statistics());
         statistics_.lost += between_;
         statistics_.irregular += refused_between_;
         statistics_.duration_ns = duration_ns;
