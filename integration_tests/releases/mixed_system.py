@@ -1,0 +1,214 @@
+"""A running system of this machine's Debian release, some of whose processes move to the other release, in the root of `deploy/release-root`.
+
+`python3 -m integration_tests.releases.mixed_system kills`, `… upgrade`: a table of what was done, and what it cost."""
+import argparse
+import os
+import pathlib
+import subprocess
+import sys
+import time
+
+from integration_tests.harness.judge import first_judged, judge, missing_frames
+from integration_tests.harness.pipeline import ALL_LANES, NotInTime, Pipeline, ask_for_priority
+from integration_tests.harness.processes import ROOT
+from integration_tests.harness.streams import SINGLE
+from integration_tests.kill_matrix.run_cell import FINAL_ERROR_RAD, LEASE_FRAMES, until_steady
+
+OTHER = {"bookworm": "trixie", "trixie": "bookworm"}
+RETURN_TIMEOUT_S = 40  # a command in the root begins some seconds later than on the machine itself
+FAULTY_AXIS = 1
+VOTERS = (1, 2)  # wire ids
+LANES = "abc"
+
+
+def own_release():
+    words = dict(line.split("=", 1) for line in pathlib.Path("/etc/os-release").read_text().splitlines() if "=" in line)
+    return words.get("VERSION_CODENAME", "").strip('"')
+
+
+def caches():
+    return pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "quorient/releases"
+
+
+def absence():
+    """@returns why no process of the other release can be started here; None where it can."""
+    other = OTHER.get(own_release())
+    if other is None:
+        return f"'{own_release()}' is not a supported release"
+    if os.geteuid() != 0:
+        return "a root of another release needs root"
+    programs = caches() / other / "build/release/bin"
+    absent = [name for name in ("quorient-fdi", "quorient-attitude", "quorient-voter") if not (programs / name).exists()]
+    return f"no {', '.join(absent)} of {other} in {programs}: deploy/release-root {other} deploy/demo builds them" if absent else None
+
+
+class MixedPipeline(Pipeline):
+    """The default demo, started on this release."""
+
+    other = OTHER.get(own_release())
+
+    def __init__(self, *assignments):
+        super().__init__("source.duration_s=600", "source.faults=[]", *assignments)
+        self.steps = []
+
+    def process_of(self, name):
+        """As of any pipeline; of a process in the root, the program itself instead of the command that made the root."""
+        process = super().process_of(name)
+        return process and next((each for each in self._with_descendants(process) if self._members_of(each) == [name]), None)
+
+    @classmethod
+    def _with_descendants(cls, process):
+        yield process
+        try:
+            children = pathlib.Path(f"/proc/{process}/task/{process}/children").read_text().split()
+        except (FileNotFoundError, ProcessLookupError):
+            return
+        for child in map(int, children):
+            yield from cls._with_descendants(child)
+
+    def release_of(self, name):
+        """By the root folder of the process itself."""
+        folder = pathlib.Path(os.readlink(f"/proc/{self.process_of(name)}/root"))
+        return self.other if folder == caches() / self.other / "root" else own_release()
+
+    def start_elsewhere(self, words):
+        """@param words  a process' command line, of either release"""
+        program, *arguments = (word.removeprefix(f"{ROOT}/") for word in words)  # the sources are the working folder there
+        name = arguments[arguments.index("--name") + 1]
+        command = [str(ROOT / "deploy/release-root"), "--host-network", self.other, f"build/release/bin/{pathlib.Path(program).name}", *arguments]
+        with (self.run_directory / f"{name}.log").open("a") as log:
+            self.started_again.append(subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log))
+        self.until(lambda: self.process_of(name), f"{name} runs on {self.other}", RETURN_TIMEOUT_S)
+
+    def step(self, what, action):
+        """Does something to the running system, waits until all lanes are behind both voters' output, and notes what it cost."""
+        since = self.merged.newest.identity
+        seen = len(self.merged.samples)
+        began_s = time.monotonic()
+        action()
+        until_steady(self, has_all_lanes, VOTERS, RETURN_TIMEOUT_S)
+        until = self.merged.newest.identity
+        alone = {sample.identity for sample in self.merged.samples[seen:] if sample.vouching != ALL_LANES}
+        truth = {sample.identity: sample for sample in self.truth.samples}
+        missing = missing_frames(self.merged.samples, truth, max(since, first_judged(self.merged.samples)), min(until, self._received()))
+        self.steps.append((what, until[1] - since[1], len(alone), len(missing), f"{time.monotonic() - began_s:.1f}"))
+
+    def _received(self):
+        """The newest frame that the listeners cannot still be waiting for."""
+        epoch, sequence = self.truth.newest.identity
+        return (epoch, sequence - self.rate_hz // 4)
+
+    def upgrade(self, *names):
+        """As deploy/README says: ends these processes in order, and starts them on the other release."""
+        commands = [self.terminate(name) for name in names]
+        for words in commands:
+            self.start_elsewhere(words)
+
+    def kill_and_start_again(self, name):
+        """A process on the other release, of which `quorient launch` knows nothing."""
+        process = self.process_of(name)
+        words = self._words_of(process)
+        self.kill(name)
+        self.until(lambda: self.is_gone(process), f"{name} is gone", 5)
+        self.start_elsewhere(words)
+
+
+def has_all_lanes(sample):
+    return sample.vouching == ALL_LANES and sample.excluded == 0 and sample.level <= SINGLE
+
+
+def kills(system):
+    """One lane of the other release; each lane is killed in turn, then a voter; in the end every lane isolates a fault."""
+    system.step(f"lane b starts on {system.other}", lambda: system.upgrade("fdi-b", "attitude-b"))
+    system.step("`attitude-b` is killed there", lambda: system.kill_and_start_again("attitude-b"))
+    system.step("`fdi-b` is killed there", lambda: system.kill_and_start_again("fdi-b"))
+    system.step("`attitude-a` is killed here", lambda: system.kill("attitude-a"))
+    system.step("`voter-1` is killed here", lambda: system.kill("voter-1"))
+    system.step("axis 1 measures too little", lambda: isolate(system))
+    return {"fdi-b", "attitude-b"}
+
+
+def isolate(system):
+    result = system.run("inject", f"axis={FAULTY_AXIS},kind=scale,value=0.8,start=0")
+    if result.returncode != 0:
+        raise NotInTime(f"inject: {result.stderr}")
+    system.until(lambda: system.merged.newest.isolated == 1 << FAULTY_AXIS, "the axis is isolated", 10)
+
+
+def upgrade(system):
+    """Lane by lane, then the standby voter, the owner last."""
+    for lane in LANES:
+        system.step(f"lane {lane}", lambda: system.upgrade(f"fdi-{lane}", f"attitude-{lane}"))
+    for voter in reversed(VOTERS):
+        system.step(f"`voter-{voter}`", lambda: system.upgrade(f"voter-{voter}"))
+    return {*(f"{kind}-{lane}" for kind in ("fdi", "attitude") for lane in LANES), *(f"voter-{voter}" for voter in VOTERS)}
+
+
+SCENARIOS = {"kills": kills, "upgrade": upgrade}
+
+
+def run(name):
+    """@returns the steps, the figures, and a sentence for each promise that did not hold."""
+    with MixedPipeline() as system:
+        try:
+            system.until_running()
+            system.step("start", lambda: None)
+            since = system.merged.newest.identity
+            moved = SCENARIOS[name](system)
+        except NotInTime as problem:
+            logs = "".join(f"\n--- {each.stem}\n{each.read_text()[-600:]}" for each in sorted(system.run_directory.glob("*.log")))
+            return system.steps, None, [f"{problem}{logs}"]
+        releases = {process: system.release_of(process) for process in moved}
+        summary = system.finish()
+        faulty = 1 << FAULTY_AXIS if name == "kills" else 0
+        figures = judge(system.merged.samples, system.plain.samples, system.truth.samples, summary, since, system.end, faulty, VOTERS, has_all_lanes)
+        return system.steps, figures, list(bounds_broken(system, figures, summary, releases, faulty))
+
+
+def bounds_broken(system, figures, summary, releases, faulty):
+    if not all(release == system.other for release in releases.values()):
+        yield f"not all moved processes are of {system.other}: {releases}"
+    if figures.missing:
+        yield f"{figures.missing} voted frames missing"
+    if figures.disordered:
+        yield f"{figures.disordered} samples out of order"
+    if figures.wrong_isolations:
+        yield f"{figures.wrong_isolations} wrong isolations"
+    if figures.plain_gap > LEASE_FRAMES:  # at the end of voter-1
+        yield f"a plain subscriber misses {figures.plain_gap} frames, {LEASE_FRAMES} allowed"
+    allowed_rad = FINAL_ERROR_RAD + ((figures.frames_to_isolation + 1) * figures.contamination_rad if faulty else 0)
+    if figures.largest_error_rad > allowed_rad:
+        yield f"largest error {figures.largest_error_rad:.2e} rad, {allowed_rad:.2e} allowed"
+    if figures.final_error_rad > FINAL_ERROR_RAD:
+        yield f"final error {figures.final_error_rad:.2e} rad, {FINAL_ERROR_RAD:.0e} allowed"
+    for lane, seen in summary["lanes"].items():
+        if seen["isolated"] != ([FAULTY_AXIS] if faulty else []):
+            yield f"lane {lane} isolated {seen['isolated']}"
+
+
+def table(steps, figures):
+    rows = [("step", "frames until all lanes stand behind both voters", "of these with fewer lanes", "frames missing", "time [s]"), ("---",) * 5, *steps]
+    text = "\n".join("| " + " | ".join(map(str, row)) + " |" for row in rows)
+    if figures:
+        text += (f"\n\n{figures.frames} frames: {figures.missing} missing, longest gap of a plain reader {figures.plain_gap} frames, largest error "
+                 f"{figures.largest_error_rad:.1e} rad, final {figures.final_error_rad:.1e} rad, {figures.wrong_isolations} wrong isolations.")
+    return text
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("scenario", choices=SCENARIOS)
+    scenario = parser.parse_args().scenario
+    reason = absence()
+    if reason:
+        print(f"skipped: {reason}", file=sys.stderr)
+        return 77
+    ask_for_priority()
+    steps, figures, broken = run(scenario)
+    print(table(steps, figures))
+    print("\n".join(broken) or "holds")
+    return 1 if broken else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
