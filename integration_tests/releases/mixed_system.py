@@ -1,4 +1,4 @@
-"""A running system of this machine's Debian release, some of whose processes move to the other release, in the root of `deploy/release-root`.
+"""A running system of this machine's Debian release, of which processes move to the other release, in the root of `deploy/release-root`.
 
 `python3 -m integration_tests.releases.mixed_system kills`, `… upgrade`: a table of what was done, and what it cost."""
 import argparse
@@ -30,15 +30,15 @@ def caches():
     return pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "quorient/releases"
 
 
-def absence():
-    """@returns why no process of the other release can be started here; None where it can."""
+def absence(scenario):
+    """@returns why no process of the other release can be started here; None where all that the scenario moves can."""
     other = OTHER.get(own_release())
     if other is None:
         return f"'{own_release()}' is not a supported release"
     if os.geteuid() != 0:
         return "a root of another release needs root"
     programs = caches() / other / "build/release/bin"
-    absent = [name for name in ("quorient-fdi", "quorient-attitude", "quorient-voter") if not (programs / name).exists()]
+    absent = [name for name in MOVES[scenario] if not (programs / name).exists()]
     return f"no {', '.join(absent)} of {other} in {programs}: deploy/release-root {other} deploy/demo builds them" if absent else None
 
 
@@ -75,7 +75,8 @@ class MixedPipeline(Pipeline):
         """@param words  a process' command line, of either release"""
         program, *arguments = (word.removeprefix(f"{ROOT}/") for word in words)  # the sources are the working folder there
         name = arguments[arguments.index("--name") + 1]
-        command = [str(ROOT / "deploy/release-root"), "--host-network", self.other, f"build/release/bin/{pathlib.Path(program).name}", *arguments]
+        there = f"build/release/bin/{pathlib.Path(program).name}"
+        command = [str(ROOT / "deploy/release-root"), "--host-network", self.other, there, *arguments]
         with (self.run_directory / f"{name}.log").open("a") as log:
             self.started_again.append(subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log))
         self.until(lambda: self.process_of(name), f"{name} runs on {self.other}", RETURN_TIMEOUT_S)
@@ -145,6 +146,7 @@ def upgrade(system):
 
 
 SCENARIOS = {"kills": kills, "upgrade": upgrade}
+MOVES = {"kills": ("quorient-fdi", "quorient-attitude"), "upgrade": ("quorient-fdi", "quorient-attitude", "quorient-voter")}
 
 
 def run(name):
@@ -161,7 +163,8 @@ def run(name):
         releases = {process: system.release_of(process) for process in moved}
         summary = system.finish()
         faulty = 1 << FAULTY_AXIS if name == "kills" else 0
-        figures = judge(system.merged.samples, system.plain.samples, system.truth.samples, summary, since, system.end, faulty, VOTERS, has_all_lanes)
+        samples = (recording.samples for recording in (system.merged, system.plain, system.truth))
+        figures = judge(*samples, summary, since, system.end, faulty, VOTERS, has_all_lanes)
         return system.steps, figures, list(bounds_broken(system, figures, summary, releases, faulty))
 
 
@@ -187,11 +190,13 @@ def bounds_broken(system, figures, summary, releases, faulty):
 
 
 def table(steps, figures):
-    rows = [("step", "frames until all lanes stand behind both voters", "of these with fewer lanes", "frames missing", "time [s]"), ("---",) * 5, *steps]
+    header = ("step", "frames until all lanes are back", "of these with fewer lanes", "frames missing", "time [s]")
+    rows = [header, ("---",) * len(header), *steps]
     text = "\n".join("| " + " | ".join(map(str, row)) + " |" for row in rows)
     if figures:
-        text += (f"\n\n{figures.frames} frames: {figures.missing} missing, longest gap of a plain reader {figures.plain_gap} frames, largest error "
-                 f"{figures.largest_error_rad:.1e} rad, final {figures.final_error_rad:.1e} rad, {figures.wrong_isolations} wrong isolations.")
+        text += (f"\n\n{figures.frames} frames: {figures.missing} missing, longest gap of a plain reader {figures.plain_gap} frames, "
+                 f"largest error {figures.largest_error_rad:.1e} rad, final {figures.final_error_rad:.1e} rad, "
+                 f"{figures.wrong_isolations} wrong isolations.")
     return text
 
 
@@ -199,7 +204,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("scenario", choices=SCENARIOS)
     scenario = parser.parse_args().scenario
-    reason = absence()
+    reason = absence(scenario)
     if reason:
         print(f"skipped: {reason}", file=sys.stderr)
         return 77
