@@ -11,8 +11,9 @@ import time
 from integration_tests.harness.judge import first_judged, judge, missing_frames
 from integration_tests.harness.pipeline import ALL_LANES, NotInTime, Pipeline, ask_for_priority
 from integration_tests.harness.processes import ROOT
+from integration_tests.harness.steady import Steady
 from integration_tests.harness.streams import SINGLE
-from integration_tests.kill_matrix.run_cell import FINAL_ERROR_RAD, LEASE_FRAMES, until_steady
+from integration_tests.kill_matrix.run_cell import FINAL_ERROR_RAD, LEASE_FRAMES
 
 OTHER = {"bookworm": "trixie", "trixie": "bookworm"}
 RETURN_TIMEOUT_S = 40  # a command in the root begins some seconds later than on the machine itself
@@ -87,7 +88,7 @@ class MixedPipeline(Pipeline):
         seen = len(self.merged.samples)
         began_s = time.monotonic()
         action()
-        until_steady(self, has_all_lanes, VOTERS, RETURN_TIMEOUT_S)
+        self.until(Steady(self.merged.samples, has_all_lanes, VOTERS), "all lanes are back", RETURN_TIMEOUT_S)
         until = self.merged.newest.identity
         alone = {sample.identity for sample in self.merged.samples[seen:] if sample.vouching != ALL_LANES}
         truth = {sample.identity: sample for sample in self.truth.samples}
