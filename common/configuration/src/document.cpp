@@ -3,12 +3,12 @@
 #include "syntax.hpp"
 
 #include <fmt/format.h>
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -17,6 +17,9 @@ namespace quorient::configuration {
 
 namespace {
 
+constexpr std::size_t most_megabytes = 16;
+
+/// Reads at most so much, so that an endless file (/dev/zero) is refused.
 tl::expected<std::string, std::string> content_of(const std::string& file)
 {
     std::error_code unknown;
@@ -24,7 +27,12 @@ tl::expected<std::string, std::string> content_of(const std::string& file)
     errno = 0;
     std::ifstream stream(file, std::ios::binary);
     if (!stream) return tl::unexpected(fmt::format("cannot be read: {}", std::strerror(errno)));
-    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    std::string text;
+    std::array<char, 4096> part{};
+    while (stream.read(part.data(), part.size()), stream.gcount() > 0) {
+        text.append(part.data(), static_cast<std::size_t>(stream.gcount()));
+        if (text.size() > most_megabytes << 20U) return tl::unexpected(fmt::format("cannot be read: more than {} MB", most_megabytes));
+    }
     if (stream.bad()) return tl::unexpected(std::string("cannot be read to its end"));
     return text;
 }

@@ -72,6 +72,11 @@ TEST(Document, tells_a_directory_from_a_file_that_is_not_there)
     EXPECT_THAT(load_yaml("/nowhere/x.yaml").error().text(), AllOf(HasSubstr("cannot be read"), HasSubstr("No such file")));
 }
 
+TEST(Document, that_never_ends_is_refused_with_the_limit)
+{
+    EXPECT_THAT(load_yaml("/dev/zero").error().text(), AllOf(HasSubstr("/dev/zero"), HasSubstr("cannot be read: more than 16 MB")));
+}
+
 TEST(Document, is_read_from_a_file)
 {
     const auto file = std::filesystem::path(testing::TempDir()) / "document_test.yaml";

@@ -12,6 +12,9 @@ namespace quorient::security {
 
 namespace {
 
+constexpr std::size_t most_megabytes = 16;
+constexpr std::size_t most_bytes = most_megabytes << 20U;
+
 /// An open file, closed by the destructor.
 class File {
 public:
@@ -25,16 +28,18 @@ public:
 
     bool is_open() const { return descriptor_ >= 0; }
 
-    /// @returns false, with errno, if it cannot be read to its end.
+    /// Reads to its end, or a little beyond most_bytes.
+    /// @returns false, with errno, if it cannot be read.
     bool read_all(std::string& content) const
     {
         std::array<char, 4096> part{};
-        for (;;) {
+        while (content.size() <= most_bytes) {
             const auto got = ::read(descriptor_, part.data(), part.size());
             if (got < 0) return false;
             if (got == 0) return true;
             content.append(part.data(), static_cast<std::size_t>(got));
         }
+        return true;
     }
 
     bool write_all(const std::string& content, mode_t mode) const
@@ -63,6 +68,7 @@ tl::expected<std::string, std::string> read_file(const std::filesystem::path& pa
     const File file{path, O_RDONLY};
     std::string content;
     if (!file.is_open() || !file.read_all(content)) return tl::make_unexpected(system_error());
+    if (content.size() > most_bytes) return tl::make_unexpected(fmt::format("more than {} MB", most_megabytes));
     return content;
 }
 

@@ -66,6 +66,13 @@ TEST_F(TokenFile, that_is_short_or_no_token_is_refused_without_repeating_it)
     }
 }
 
+TEST_F(TokenFile, that_never_ends_is_refused_with_the_limit)
+{
+    const auto token = Token::read("/dev/zero");
+    ASSERT_FALSE(token);
+    EXPECT_THAT(token.error(), HasSubstr("/dev/zero: cannot be read: more than 16 MB"));
+}
+
 TEST_F(TokenFile, that_is_not_there_is_an_error_that_says_how_to_make_one)
 {
     const auto token = Token::read(path_);
