@@ -34,10 +34,7 @@ double end_of(const recording::AlignedFrame& frame)
 std::vector<recording::SurveyedInstrument> compared_of(const recording::Survey& survey)
 {
     std::vector<recording::SurveyedInstrument> compared;
-    for (const std::size_t i : survey.compared) {
-        compared.push_back(survey.instruments[i]);
-        compared.back().windows.clear();
-    }
+    for (const std::size_t i : survey.compared) compared.push_back(survey.instruments[i]);
     return compared;
 }
 

@@ -11,6 +11,8 @@ constexpr double low_passed_share = 0.35;
 
 }  // namespace
 
+// Functions of the inner loop are inline: without it, -fPIC makes each a call.
+
 /// One component of one window.
 struct MatchedFilters::Window {
     const ComponentSums& sums;
@@ -20,6 +22,7 @@ struct MatchedFilters::Window {
     std::size_t component;
     std::size_t frames;
     InstrumentSet compared;  ///< through the whole window
+    std::size_t others;      ///< of them, for each
     bool lasting;
 };
 
@@ -53,7 +56,7 @@ Suspicions MatchedFilters::examine(const WindowSums& sums, const WindowSums* low
         for (std::size_t c = 0; c < component_count; ++c) {
             const ComponentSums& of = over.component[c];
             if (!Windows::is_even(frames, of.weight, of.weight_squared)) continue;
-            const Window window{of, low_passed != nullptr ? &low.component[c] : nullptr, sums, learning, c, frames, through, lasting};
+            const Window window{of, low_passed != nullptr ? &low.component[c] : nullptr, sums, learning, c, frames, through, through.size() - 1, lasting};
             examine(window, Filter::bias, found);
             if (frames < Windows::shortest_shaped) continue;
             examine(window, Filter::gain, found);
@@ -63,11 +66,11 @@ Suspicions MatchedFilters::examine(const WindowSums& sums, const WindowSums* low
     return found;
 }
 
-MatchedFilters::Contrast MatchedFilters::contrast_of(const Window& window, const PerInstrument& deviation, const PerInstrument& own_noise,
+inline MatchedFilters::Contrast MatchedFilters::contrast_of(const Window& window, const PerInstrument& deviation, const PerInstrument& own_noise,
                                                      std::size_t m) const
 {
     Contrast contrast{};
-    contrast.others = window.compared.size() - 1;
+    contrast.others = window.others;
     const auto n = static_cast<double>(contrast.others);
     double mean = 0;
     double noise = 0;
@@ -86,7 +89,7 @@ MatchedFilters::Contrast MatchedFilters::contrast_of(const Window& window, const
 }
 
 /// `variance` holds the allowances too.
-double MatchedFilters::certainty(const Contrast& contrast, Filter filter, bool lasting) const
+inline double MatchedFilters::certainty(const Contrast& contrast, Filter filter, bool lasting) const
 {
     const double rho = rules_.others_must_agree ? Windows::scatter_factor(contrast.others - 1) : 0;
     const double bound = Windows::sigmas(filter != Filter::bias, lasting) * std::sqrt(contrast.variance) + rho * contrast.scatter;
@@ -109,17 +112,17 @@ void MatchedFilters::examine(const Window& window, Filter filter, Suspicions& fo
             certain = agreeing(window, filter, m, certain, contrast.difference > 0);
         }
         found.take({certain, m, window.component, window.frames, filter}, window.lasting, [&] { return persists(window, filter, m); },
-                   [&] { return filter == Filter::bias && (!rules_.smallest_angle || matters(window, m)); });
+                   [&] { return filter == Filter::bias && certain > found.brief_of[m] && (!rules_.smallest_angle || matters(window, m)); });
     }
 }
 
 /// Whether an attitude that follows this instrument would notice.
-bool MatchedFilters::matters(const Window& window, std::size_t m) const
+inline bool MatchedFilters::matters(const Window& window, std::size_t m) const
 {
     const PerInstrument& sums = window.sums.unclipped;
     double difference = sums[m];
     for (std::size_t j = 0; j < count_; ++j)
-        if (j != m && window.compared.has(j)) difference -= sums[j] / static_cast<double>(window.compared.size() - 1);
+        if (j != m && window.compared.has(j)) difference -= sums[j] / static_cast<double>(window.others);
     return std::abs(difference) * windows_.seconds(window.frames) > windows_.least_angle_rad(window.frames) * window.sums.weight;
 }
 
@@ -149,7 +152,7 @@ bool MatchedFilters::persists(const Window& window, Filter filter, std::size_t m
 /// The running total of an instrument's difference to the others, up to this age.
 double MatchedFilters::contradiction_before(const Window& window, Filter filter, std::size_t m, std::size_t age) const
 {
-    const auto others = static_cast<double>(window.compared.size() - 1);
+    const auto others = static_cast<double>(window.others);
     return window.ring.total(age, [&](const FrameSums& totals) {
         const PerInstrument& deviation = totals.component[window.component].filter[static_cast<std::size_t>(filter)].deviation;
         double difference = 0;

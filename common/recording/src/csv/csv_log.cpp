@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace quorient::recording::csv {
 
@@ -33,6 +34,7 @@ void CsvLog::to_first_row()
     }
     cells_.clear();
     gyros_.clear();
+    of_columns_.clear();
     instruments_.clear();
     next_gyro_ = layout_.gyros.size();
     ended_ = false;
@@ -50,6 +52,7 @@ bool CsvLog::next_row()
         if (outcome == LineSource::Outcome::line && (text.empty() || text.front() == '#' || text.front() == '%')) continue;
         split_cells(line, dialect_.delimiter, cells_);
         next_gyro_ = 0;
+        timed_ = nullptr;
         return true;
     }
 }
@@ -88,6 +91,15 @@ std::optional<std::int64_t> CsvLog::time_of(const GyroColumns& gyro) const
     return *time_ns + std::clamp<std::int64_t>(*fraction_ns, 0, 1'000'000'000);
 }
 
+/// The time of the row in hand. Its gyros mostly share one column, which is read once.
+std::optional<std::int64_t> CsvLog::row_time_of(const GyroColumns& gyro)
+{
+    const auto clock_of = [](const GyroColumns& of) { return std::tie(of.time, of.time_fraction, of.time_unit_ns); };
+    if (timed_ == nullptr || clock_of(*timed_) != clock_of(gyro)) row_time_ns_ = time_of(gyro);
+    timed_ = &gyro;
+    return row_time_ns_;
+}
+
 /// One instrument's part of a row; nothing = it has none in this row.
 std::optional<ReadOutcome> CsvLog::read(std::size_t number, InstrumentSample& sample)
 {
@@ -98,7 +110,7 @@ std::optional<ReadOutcome> CsvLog::read(std::size_t number, InstrumentSample& sa
     if (empty) return std::nullopt;
     ++statistics_.records;
     if (const auto refused = read_values(gyro, sample, raw)) return refused;
-    const auto time_ns = time_of(gyro);
+    const auto time_ns = row_time_of(gyro);
     if (!time_ns) {
         ++statistics_.malformed;
         return refuse(fmt::format("'{}' is not a time", cell(gyro.time).substr(0, 40)));
@@ -161,8 +173,14 @@ std::optional<ReadOutcome> CsvLog::read_values(const GyroColumns& gyro, Instrume
 
 CsvLog::Gyro* CsvLog::gyro_state(std::size_t number)
 {
-    const std::string_view identity = layout_.identity ? cell(*layout_.identity) : std::string_view{};
-    const std::string_view key = layout_.identity ? identity.substr(0, 64) : std::string_view(layout_.gyros[number].name);
+    if (layout_.identity) return gyro_named(cell(*layout_.identity).substr(0, 64), number);
+    if (of_columns_.size() <= number) of_columns_.resize(number + 1);
+    if (of_columns_[number] == nullptr) of_columns_[number] = gyro_named(layout_.gyros[number].name, number);
+    return of_columns_[number];
+}
+
+CsvLog::Gyro* CsvLog::gyro_named(std::string_view key, std::size_t number)
+{
     const auto found = gyros_.find(key);
     if (found != gyros_.end()) return found->second.known ? &found->second : nullptr;
     if (gyros_.size() >= max_instruments) return nullptr;

@@ -41,9 +41,11 @@ private:
     void to_first_row();
     bool next_row();
     std::optional<std::int64_t> time_of(const GyroColumns& gyro) const;
+    std::optional<std::int64_t> row_time_of(const GyroColumns& gyro);
     std::optional<ReadOutcome> read(std::size_t gyro, InstrumentSample& sample);
     std::optional<ReadOutcome> read_values(const GyroColumns& gyro, InstrumentSample& sample, std::array<double, 3>& raw);
     Gyro* gyro_state(std::size_t gyro);
+    Gyro* gyro_named(std::string_view key, std::size_t gyro);
     ReadOutcome refuse(std::string_view why);
     std::string_view cell(std::size_t place) const { return place < cells_.size() ? cells_[place] : std::string_view{}; }
 
@@ -56,7 +58,10 @@ private:
     std::size_t header_cells_ = 0;
     std::vector<std::string_view> cells_;       // the row in hand
     std::size_t next_gyro_ = 0;                 // next one of the row in hand
-    std::map<std::string, Gyro, std::less<>> gyros_;  // by identity in the long form, else by number
+    const GyroColumns* timed_ = nullptr;        // whose time row_time_ns_ is, in the row in hand
+    std::optional<std::int64_t> row_time_ns_;
+    std::map<std::string, Gyro, std::less<>> gyros_;  // by identity in the long form, else by name
+    std::vector<Gyro*> of_columns_;             // of gyros_, by number, in the wide form
     bool ended_ = false;
 };
 

@@ -91,7 +91,6 @@ struct AlignedLogs::State {
             const SurveyedInstrument& instrument = survey.instruments[i];
             ways.emplace_back(instrument, survey.one_epoch ? survey.logs.front().first_ns : survey.logs[instrument.log].first_ns);
             instruments.push_back(instrument);
-            instruments.back().windows.clear();
         }
     }
 
@@ -149,7 +148,7 @@ struct AlignedLogs::State {
     double interval_s;
     std::vector<Open> logs;
     std::vector<Way> ways;
-    std::vector<SurveyedInstrument> instruments;  // without their windows
+    std::vector<SurveyedInstrument> instruments;
     InstrumentSample sample;
     std::string problem;
     bool finished = false;

@@ -29,37 +29,64 @@ public:
         if (since_ns < 0) return;
         const auto number = static_cast<std::size_t>(since_ns / std::llround(window_s * 1e9));
         if (number % stride_ != 0 || number > farthest) return;
-        if (windows_.size() <= instrument) windows_.resize(instrument + 1);
-        auto& windows = windows_[instrument];
-        if (windows.size() <= number) windows.resize(number + 1);
+        if (of_.size() <= instrument) of_.resize(instrument + 1);
+        Kept& of = of_[instrument];
+        if (of.windows.size() <= number) of.windows.resize(number + 1);
+        KeptWindow& window = of.windows[number];
+        if (window.empty()) of.begin(window);
         KeptSample kept{sample.time_ns, {}};
         for (std::size_t k = 0; k < 3; ++k) kept.rate_rad_s[k] = static_cast<float>(sample.rate_rad_s[k]);
-        windows[number].push_back(kept);
+        window.push_back(kept);
+        of.longest = std::max(of.longest, window.size());
         if (++kept_ > limit_) thin_out();
     }
 
     void limit(std::size_t most) { limit_ = most; }
     std::vector<KeptWindow> take(std::size_t instrument)
     {
-        return instrument < windows_.size() ? std::move(windows_[instrument]) : std::vector<KeptWindow>{};
+        return instrument < of_.size() ? std::move(of_[instrument].windows) : std::vector<KeptWindow>{};
     }
 
 private:
     static constexpr std::size_t farthest = 1U << 16U;  // a fortnight
 
+    /// Stretches of one instrument. Memory that is touched for the first time costs more than a sample's other work, so it is used again.
+    struct Kept {
+        std::vector<KeptWindow> windows;
+        std::vector<KeptWindow> spare;  ///< empty ones, with their memory
+        std::size_t longest = 0;        ///< samples in a stretch so far
+
+        void begin(KeptWindow& window)
+        {
+            if (!spare.empty()) {
+                window = std::move(spare.back());
+                spare.pop_back();
+            }
+            window.reserve(longest + longest / 64);
+        }
+
+        void give_up(KeptWindow& window)
+        {
+            if (window.capacity() == 0) return;
+            window.clear();
+            spare.push_back(std::move(window));
+            window = {};
+        }
+    };
+
     void thin_out()
     {
         stride_ *= 2;
         kept_ = 0;
-        for (auto& windows : windows_) {
-            for (std::size_t i = 0; i < windows.size(); ++i) {
-                if (i % stride_ != 0) KeptWindow().swap(windows[i]);
-                kept_ += windows[i].size();
+        for (Kept& of : of_) {
+            for (std::size_t i = 0; i < of.windows.size(); ++i) {
+                if (i % stride_ != 0) of.give_up(of.windows[i]);
+                kept_ += of.windows[i].size();
             }
         }
     }
 
-    std::vector<std::vector<KeptWindow>> windows_;
+    std::vector<Kept> of_;  // by instrument
     std::size_t stride_ = 1;
     std::size_t kept_ = 0;
     std::size_t limit_ = most_kept;

@@ -27,8 +27,8 @@ constexpr double least_gain = 0.9;          // placing samples must reduce the d
 
 using Profile = std::vector<double>;
 
-/// Rate of turn at a grid of times since the window's begin; NaN where the instrument has no sample.
-Profile rate_profile(const KeptWindow& window, const std::vector<std::int64_t>& time_ns, std::int64_t begin_ns, std::size_t average)
+/// Angle turned through up to a grid of times since the window's begin; NaN where the instrument has no sample.
+Profile angle_profile(const KeptWindow& window, const std::vector<std::int64_t>& time_ns, std::int64_t begin_ns)
 {
     const auto count = static_cast<std::size_t>(std::lround(window_s / grid_s));
     Profile angle(count + 1, std::nan(""));
@@ -44,7 +44,13 @@ Profile rate_profile(const KeptWindow& window, const std::vector<std::int64_t>& 
             angle[static_cast<std::size_t>(point)] = turned + speed * (point * grid_s - from_s);
         turned += speed * (to_s - from_s);
     }
-    Profile rate(count + 1, std::nan(""));
+    return angle;
+}
+
+/// Rate of turn at the same times.
+Profile rate_profile(const Profile& angle, std::size_t average)
+{
+    Profile rate(angle.size(), std::nan(""));
     for (std::size_t i = average; i + average < angle.size(); ++i)
         rate[i] = (angle[i + average] - angle[i - average]) / (2 * static_cast<double>(average) * grid_s);
     return rate;
@@ -166,27 +172,28 @@ private:
     {
         Profiles made;
         const bool placed = own_clock && instrument.arrival_period_s;
-        KeptWindow all;
-        std::vector<std::int64_t> times;
+        const std::int64_t length_ns = std::llround(window_s * 1e9);
+        std::int64_t begin_ns = origin_ns(instrument);
+        KeptWindow part;
+        std::vector<std::int64_t> part_times;
+        const auto end_part = [&] {
+            const Profile angle = part.empty() ? Profile{} : angle_profile(part, part_times, begin_ns);
+            made.smooth.push_back(rate_profile(angle, half_window));
+            made.sharp.push_back(rate_profile(angle, 1));
+            part.clear();
+            part_times.clear();
+            begin_ns += length_ns;
+        };
         for (const KeptWindow& window : instrument.windows) {
             if (window.empty()) continue;
             const auto at = placed ? placed_on_own_clock(window, *instrument.arrival_period_s, nullptr, nullptr) : stamps_of(window);
-            all.insert(all.end(), window.begin(), window.end());
-            times.insert(times.end(), at.begin(), at.end());
-        }
-        const std::int64_t length_ns = std::llround(window_s * 1e9);
-        std::size_t next = 0;
-        for (std::size_t number = 0; next < all.size(); ++number) {
-            const std::int64_t begin_ns = origin_ns(instrument) + static_cast<std::int64_t>(number) * length_ns;
-            KeptWindow part;
-            std::vector<std::int64_t> part_times;
-            for (; next < all.size() && times[next] - begin_ns < length_ns; ++next) {
-                part.push_back(all[next]);
-                part_times.push_back(times[next]);
+            for (std::size_t i = 0; i < window.size(); ++i) {
+                while (at[i] - begin_ns >= length_ns) end_part();
+                part.push_back(window[i]);
+                part_times.push_back(at[i]);
             }
-            made.smooth.push_back(part.empty() ? Profile{} : rate_profile(part, part_times, begin_ns, half_window));
-            made.sharp.push_back(part.empty() ? Profile{} : rate_profile(part, part_times, begin_ns, 1));
         }
+        if (!part.empty()) end_part();
         return made;
     }
 
@@ -344,8 +351,10 @@ private:
 
 tl::expected<void, std::string> tie_clocks(Survey& survey)
 {
-    if (survey.compared.empty()) return {};
-    return Tie(survey).all();
+    if (!survey.compared.empty())
+        if (auto tied = Tie(survey).all(); !tied) return tied;
+    for (SurveyedInstrument& instrument : survey.instruments) instrument.windows = {};
+    return {};
 }
 
 }  // namespace quorient::recording

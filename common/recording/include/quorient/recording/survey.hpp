@@ -44,7 +44,7 @@ struct SurveyedInstrument {
     InstrumentFigures figures;
     std::vector<RateChange> rate_changes;
     std::optional<double> arrival_period_s;  ///< by the earliest arrivals
-    std::vector<KeptWindow> windows;         ///< by number of the stretch; empty where nothing was kept
+    std::vector<KeptWindow> windows;         ///< by number of the stretch; empty where nothing was kept; tie_clocks gives them up
     ClockFigures clock;
 
     /// Largest rate of an axis, as it is stated or else as its values show it; 0 where nothing does.
@@ -88,7 +88,7 @@ using Progress = std::function<void(double)>;
 tl::expected<Survey, std::string> survey(std::span<const std::filesystem::path> files, const LogOptions& options, const Progress& progress = {});
 
 /// Ties the clocks of the compared instruments to that of the first one, by the motion they show; decides whose samples are to be placed on a
-/// clock of their own.
+/// clock of their own. The kept stretches have served then, and their memory is released.
 /// @returns an error if logs that do not share a clock show no common motion.
 tl::expected<void, std::string> tie_clocks(Survey& survey);
 
