@@ -151,12 +151,17 @@ void split_plain(std::string_view line, char delimiter, std::vector<std::string_
     give(line.substr(begin));
 }
 
-std::optional<double> plain_number(std::string_view text)
+std::optional<double> missing_number(std::string_view text)
 {
-    if (const auto value = number(text)) return value;
     for (const std::string_view missing : {"", "-", "--", "null", "NULL", "None", "NA", "N/A", "#N/A", "NaN", "n/a", "1.#QNAN", "-1.#IND", "1.#IND", "1.#INF", "-1.#INF"})
         if (text == missing) return std::numeric_limits<double>::quiet_NaN();
     return std::nullopt;
+}
+
+std::optional<double> plain_number(std::string_view text)
+{
+    const auto value = number(text);
+    return value ? value : missing_number(text);
 }
 
 }  // namespace
