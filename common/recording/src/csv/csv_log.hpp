@@ -61,7 +61,7 @@ private:
     const GyroColumns* timed_ = nullptr;        // whose time row_time_ns_ is, in the row in hand
     std::optional<std::int64_t> row_time_ns_;
     std::map<std::string, Gyro, std::less<>> gyros_;  // by identity in the long form, else by name
-    std::vector<Gyro*> of_columns_;             // of gyros_, by number, in the wide form
+    std::vector<Gyro*> of_columns_;             // in the wide form by number: those of gyros_
     bool ended_ = false;
 };
 
