@@ -1,20 +1,11 @@
 #pragma once
 
-#include "quorient/fdi/detector.hpp"
-#include "quorient/geometry/sensor_cluster.hpp"
+#include "sensed_scene.hpp"
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <numbers>
-#include <random>
 #include <span>
-#include <vector>
 
 namespace quorient::fdi {
-
-constexpr double degree = std::numbers::pi / 180;
 
 /// What sound instruments of one array differ by: standard deviations.
 struct Differences {
@@ -28,13 +19,11 @@ struct Differences {
     double own_vibration_deg_s = 0;  ///< amplitude of what each instrument feels alone, at 14 Hz
 };
 
-/// Triads on one body. The truth is known: their differences, the motion, and what a test spoils.
-class FieldScene {
+/// Triads on one body.
+class FieldScene : public SensedScene {
 public:
-    using Rates = std::vector<double>;  ///< deg/s, one per axis
-
     FieldScene(std::size_t instruments, std::uint64_t seed, const Differences& differences = {}, double interval_s = 0.01)
-        : interval_s_(interval_s), differences_(differences), random_(seed)
+        : SensedScene(seed, interval_s), differences_(differences)
     {
         cluster.axes.resize(static_cast<Eigen::Index>(3 * instruments), 3);
         for (std::size_t m = 0; m < instruments; ++m) {
@@ -44,7 +33,7 @@ public:
             for (auto& value : one.bias_deg_s.reshaped()) value = differences.bias_deg_s * normal();
             for (auto& value : one.gain.reshaped()) value += differences.gain * normal();
             one.delay_s = differences.delay_s * normal();
-            one.phase = 2 * std::numbers::pi * std::uniform_real_distribution<double>()(random_);
+            one.phase = any_phase();
             instruments_.push_back(one);
             mount(m, Eigen::Matrix3d::Identity());
         }
@@ -64,46 +53,6 @@ public:
 
     void set_bias(std::size_t m, std::size_t axis, double deg_s) { instruments_[m].bias_deg_s(static_cast<Eigen::Index>(axis)) = deg_s; }
 
-    /// A flight: slow turns, manoeuvres, and the vibration that all feel; up to 350 deg/s.
-    static Eigen::Vector3d flight(double t)
-    {
-        return {120 * std::sin(2.1 * t) + 60 * std::sin(7.3 * t + 1) + 4 * std::sin(60 * t),
-                90 * std::sin(1.3 * t + 2) + 80 * std::cos(5.9 * t) + 5 * std::sin(71 * t),
-                150 * std::sin(0.9 * t) + 40 * std::sin(9.1 * t) + 3 * std::sin(83 * t)};
-    }
-    static Eigen::Vector3d rest(double) { return Eigen::Vector3d::Zero(); }
-    /// A rest of so many seconds, then a flight.
-    static std::function<Eigen::Vector3d(double)> flight_after(double seconds)
-    {
-        return [seconds](double t) -> Eigen::Vector3d { return t < seconds ? rest(t) : Eigen::Vector3d(flight(t - seconds) * std::min(1.0, t - seconds)); };
-    }
-
-    std::function<Eigen::Vector3d(double)> motion = flight_after(2);         ///< of the body [deg/s]
-    std::function<void(std::uint64_t sequence, Rates&)> spoil = [](std::uint64_t, Rates&) {};
-
-    /// The next measurement; NaN where an instrument has no data.
-    Measurement next()
-    {
-        const double t = static_cast<double>(sequence_) * interval_s_;
-        rates_.clear();
-        for (Instrument& one : instruments_) measure(one, t);
-        spoil(sequence_, rates_);
-        increments_.clear();
-        AxisMask valid = 0;
-        for (std::size_t axis = 0; axis < rates_.size(); ++axis) {
-            increments_.push_back(rates_[axis] * degree * interval_s_);
-            if (std::isfinite(rates_[axis])) valid |= axis_bit(axis);
-        }
-        return {.identity = {1, sequence_++}, .interval_s = interval_s_, .increment = increments_, .valid = valid};
-    }
-
-    std::uint64_t sequence() const { return sequence_; }
-    double time_s() const { return static_cast<double>(sequence_) * interval_s_; }
-    double normal() { return normal_(random_); }
-
-    static constexpr double range_deg_s = 2000;
-    geometry::SensorCluster cluster;
-
 private:
     struct Instrument {
         Eigen::Vector3d bias_deg_s;
@@ -113,28 +62,25 @@ private:
         double phase = 0;
     };
 
-    void measure(Instrument& one, double t)
+    void measure(double t, Rates& rates) override
+    {
+        for (Instrument& one : instruments_) measure(one, t, rates);
+    }
+
+    void measure(Instrument& one, double t, Rates& rates)
     {
         const double instant = t - one.delay_s + differences_.jitter_s * normal();
         Eigen::Vector3d felt = motion(instant);
         felt += differences_.own_vibration_deg_s * std::sin(2 * std::numbers::pi * 14 * t + one.phase) * Eigen::Vector3d(1, 0.7, -0.8);
         const Eigen::Vector3d exact = one.gain * one.mounted * felt;
         for (Eigen::Index i = 0; i < 3; ++i) {
-            one.bias_deg_s(i) += differences_.drift_deg_s * std::sqrt(interval_s_) * normal();
-            double value = exact(i) + one.bias_deg_s(i) + differences_.noise_deg_s * normal();
-            if (differences_.quantum_deg_s > 0) value = std::round(value / differences_.quantum_deg_s) * differences_.quantum_deg_s;
-            rates_.push_back(std::clamp(value, -range_deg_s, range_deg_s));
+            one.bias_deg_s(i) += differences_.drift_deg_s * std::sqrt(interval_s()) * normal();
+            rates.push_back(digitised(exact(i) + one.bias_deg_s(i) + differences_.noise_deg_s * normal(), differences_.quantum_deg_s));
         }
     }
 
-    double interval_s_;
     Differences differences_;
-    std::mt19937_64 random_;
-    std::normal_distribution<double> normal_;
     std::vector<Instrument> instruments_;
-    Rates rates_;
-    std::vector<double> increments_;
-    std::uint64_t sequence_ = 0;
 };
 
 /// What a detector said while a scene was played. What it names is excluded at once, as a monitor does.

@@ -43,4 +43,25 @@ void Accusations::keep_in_use(std::size_t accused, std::uint64_t now, Instrument
     }
 }
 
+void Accusations::report(std::size_t m, AxisMask axes, std::uint64_t now, InstrumentSet compared, Assessment& assessment) const
+{
+    if (named(m)) {
+        assessment.outcome = Outcome::isolated;
+        assessment.isolated |= axes;
+        assessment.onset = std::min(assessment.onset, onset(m));
+    } else if (!left_out(m, now) || !compared.has(m)) {
+        return;
+    }
+    assessment.provisional |= axes;
+    assessment.provisional_from = std::min(assessment.provisional_from, onset(m));
+}
+
+void Accusations::report_suspects(Assessment& assessment)
+{
+    if (assessment.outcome != Outcome::healthy || assessment.provisional == 0) return;
+    assessment.outcome = Outcome::suspect;
+    assessment.isolated = assessment.provisional;
+    assessment.onset = assessment.provisional_from;
+}
+
 }  // namespace quorient::fdi::field

@@ -46,6 +46,13 @@ public:
         of_[m].onset = onset;
     }
 
+    /// What is held against this member: a named one is isolated; it, and one of the comparison that is left out, is left out of the attitude.
+    /// @param axes  the member's
+    void report(std::size_t m, AxisMask axes, std::uint64_t now, InstrumentSet compared, Assessment& assessment) const;
+
+    /// Where all members have been reported and nobody is isolated, those that are left out are suspect.
+    static void report_suspects(Assessment& assessment);
+
 private:
     /// A member that is left out more than `most_returns` times within this time is erratic.
     static constexpr double whipsaw_s = 10;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "field/compared_frames.hpp"
 #include "field/learning.hpp"
 #include "field/suspicions.hpp"
 #include "quorient/fdi/field_detector.hpp"
@@ -19,8 +20,6 @@ class MatchedFilters {
 public:
     /// @param low_passed  the same sums below 2 Hz: gain and delay count only where they agree
     MatchedFilters(std::size_t instruments, double interval_s, const FieldRules& rules);
-
-    using Ages = std::array<std::uint64_t, max_instruments>;
 
     /// @param age  frames that each instrument has been compared for without a break
     /// @param frame  counts frames: which windows are due

@@ -33,6 +33,7 @@ FieldDetector::State::State(geometry::SensorCluster cluster, const InstrumentArr
       comparison_(array_.size(), framing_.interval_s(), settings.mount, field::allowed_by(settings, framing_.interval_s()), rules),
       filters_(array_.size(), framing_.interval_s(), rules),
       diagnostics_(cluster_, array_, framing_.axes(), comparison_.learning().allowed()),
+      history_(array_.size()),
       accusations_(array_.size(), least_in_use, framing_.interval_s())
 {
     if (rules_.fast_lane) fast_lane_ = field::FastLane::make(settings, cluster_);
@@ -48,16 +49,15 @@ void FieldDetector::State::reset()
     comparison_.reset();
     diagnostics_.reset();
     if (fast_lane_) fast_lane_->reset();
-    pending_count_ = 0;
+    pending_.clear();
     learning_begun_ = false;
-    frames_ = 0;
-    ages_.fill(0);
+    history_.reset();
     accusations_.reset();
     degraded_.fill({});
     limited_.fill({});
     disturbance_ = 0;
     certainty_ = 0;
-    disagreement_until_ = 0;
+    disagreement_.reset();
 }
 
 void FieldDetector::State::exclude(AxisMask excluded)
@@ -69,7 +69,7 @@ void FieldDetector::State::exclude(AxisMask excluded)
         now.set(m, (array_[m].mask & excluded_axes_) != 0);
         if (now.has(m) == excluded_.has(m)) continue;
         accusations_.acquit(m);
-        ages_[m] = 0;
+        history_.begin_again(m);
         if (now.has(m)) {
             diagnostics_.accuse(m, {});
         } else {  // trusted again: a newcomer
@@ -79,7 +79,7 @@ void FieldDetector::State::exclude(AxisMask excluded)
     }
     if (now == excluded_) return;
     excluded_ = now;
-    pending_count_ = 0;
+    pending_.clear();
     comparison_.learning().centre(comparable());
 }
 
@@ -117,9 +117,8 @@ void FieldDetector::State::advance(const field::Frame& frame)
 {
     certainty_ = 0;
     if (!frame.follows) {
-        pending_count_ = 0;
-        const double missing = frame.sequence > last_sequence_ ? static_cast<double>(frame.sequence - last_sequence_) : 0;
-        if (learning_begun_) comparison_.learning().wander(missing * cluster_.interval_s);
+        pending_.clear();
+        if (learning_begun_) comparison_.learning().wander(field::missing_s(frame.sequence, last_sequence_, cluster_.interval_s));
     }
     last_sequence_ = frame.sequence;
     const auto forgotten = static_cast<std::uint64_t>(field::forgotten_after_s / framing_.interval_s());
@@ -128,7 +127,7 @@ void FieldDetector::State::advance(const field::Frame& frame)
     presence_.update(frame.present);
     start_with(frame);
     take_in(frame);
-    if (pending_count_ == pending_.size()) compare();
+    if (pending_.complete()) compare();
     if (fast_lane_) follow_fast_lane();
 }
 
@@ -140,7 +139,7 @@ void FieldDetector::State::start_with(const field::Frame& frame)
     for (std::size_t m = 0; m < array_.size(); ++m) {
         if (!ended.has(m)) continue;
         if (learning_begun_) comparison_.learning().admit(m, start_.rested(m));
-        ages_[m] = 0;
+        history_.begin_again(m);
     }
     if (!learning_begun_) {
         learning_from_ = frame.sequence;
@@ -161,15 +160,10 @@ void FieldDetector::State::take_in(const field::Frame& frame)
     const InstrumentSet present = compared & frame.present;
     // Two cannot stand in for a third, and the consensus of others would jump.
     if (present.size() < std::clamp<std::size_t>(compared.size(), 2, 3)) {
-        pending_count_ = 0;
+        pending_.clear();
         return;
     }
-    if (pending_count_ == pending_.size()) {
-        pending_[0] = pending_[1];
-        pending_[1] = pending_[2];
-        --pending_count_;
-    }
-    Pending& newest = pending_[pending_count_];
+    Pending& newest = pending_.add();
     newest.frame = frame;
     newest.present = present;
     newest.rates.setZero();
@@ -178,29 +172,12 @@ void FieldDetector::State::take_in(const field::Frame& frame)
             newest.rates.col(static_cast<Eigen::Index>(m)) = frame.rate.col(static_cast<Eigen::Index>(m)) - start_.bias(m);
     newest.consensus = comparison_.consensus(newest.rates, present, last_consensus_);
     last_consensus_ = newest.consensus;
-    ++pending_count_;
-}
-
-void FieldDetector::State::age_instruments()
-{
-    const InstrumentSet compared = comparable();
-    for (std::size_t m = 0; m < array_.size(); ++m) ages_[m] = compared.has(m) ? ages_[m] + 1 : 0;
-}
-
-std::uint64_t FieldDetector::State::begin_of(std::size_t window) const
-{
-    return sequences_[(frames_ - window) % sequences_.size()];
-}
-
-std::size_t FieldDetector::State::oldest_kept() const
-{
-    return std::min<std::size_t>(frames_, field::longest_window);
 }
 
 bool FieldDetector::State::may_learn() const
 {
-    const bool knows_noise = frames_ >= frames_in(field::noise_known_s);
-    return rules_.learning && knows_noise && accusations_.calm(frames_) && disturbance_ < field::largest_learned_from && comparable().size() >= 3;
+    const bool knows_noise = history_.count() >= frames_in(field::noise_known_s);
+    return rules_.learning && knows_noise && accusations_.calm(history_.count()) && disturbance_ < field::largest_learned_from && comparable().size() >= 3;
 }
 
 /// The middle one of three frames.
@@ -215,9 +192,7 @@ void FieldDetector::State::compare()
     field::Comparison::Input input{.rates = now.rates, .compared = compared, .present = present, .learns = may_learn()};
     for (std::size_t c = 0; c < component_count; ++c) input.blind[c] = saturation_.is_common() || saturation_.blinds(c);
     comparison_.add({now.consensus, now.consensus - pending_[0].consensus, pending_[2].consensus - now.consensus}, input);
-    sequences_[frames_ % sequences_.size()] = now.frame.sequence;
-    ++frames_;
-    age_instruments();
+    history_.add(now.frame.sequence, compared);
     diagnose();
 
     if (compared.size() == 2) {
@@ -225,7 +200,7 @@ void FieldDetector::State::compare()
         return judge_two(compared);
     }
     if (compared.size() < 3) return;
-    judge(filters_.examine(comparison_.sums(), comparison_.slow_sums(), comparison_.learning(), compared, ages_, frames_));
+    judge(filters_.examine(comparison_.sums(), comparison_.slow_sums(), comparison_.learning(), compared, history_.ages(), history_.count()));
 }
 
 std::uint64_t FieldDetector::State::frames_in(double seconds) const
@@ -240,7 +215,7 @@ void FieldDetector::State::diagnose()
     const bool knows_rate = !saturation_.is_common() && !saturation_.blinds(0) && !saturation_.blinds(1) && !saturation_.blinds(2);
     for (std::size_t m = 0; m < array_.size(); ++m) {
         if (!diagnostics_.accused(m)) continue;
-        const bool holds = accusations_.named(m) || excluded_.has(m) || !accusations_.calm(frames_);
+        const bool holds = accusations_.named(m) || excluded_.has(m) || !accusations_.calm(history_.count());
         if (!holds) {
             diagnostics_.acquit(m);
             continue;
@@ -251,7 +226,7 @@ void FieldDetector::State::diagnose()
         const auto rate_in = [&](const Pending& frame) { return comparison_.consensus(frame.rates, others, frame.consensus); };
         const Eigen::Vector3d acceleration = (rate_in(pending_[2]) - rate_in(pending_[0])) / (2 * framing_.interval_s());
         diagnostics_.add(m, now.rates.col(static_cast<Eigen::Index>(m)), rate_in(now), acceleration);
-        if (frames_ % field::frames_between_diagnoses != 0) continue;
+        if (history_.count() % field::frames_between_diagnoses != 0) continue;
         const double usual = std::sqrt(std::max({comparison_.noise().typical(0), comparison_.noise().typical(1), comparison_.noise().typical(2)}));
         const double share = 1 / std::sqrt(static_cast<double>(others.size()));
         diagnostics_.judge(m, -start_.bias(m), {start_.rested(m), usual, comparison_.learning().deviations() * share});

@@ -1,8 +1,10 @@
 #pragma once
 
 #include "field/accusations.hpp"
+#include "field/compared_frames.hpp"
 #include "field/comparison.hpp"
 #include "field/diagnostics.hpp"
+#include "field/disagreement.hpp"
 #include "field/fast_lane.hpp"
 #include "field/framing.hpp"
 #include "field/matched_filters.hpp"
@@ -55,7 +57,6 @@ private:
     InstrumentSet comparable() const;
     void take_in(const field::Frame& frame);
     void compare();
-    void age_instruments();
     void judge(const field::Suspicions& found);
     void judge_two(InstrumentSet two);
     void contradict(const Suspicion& suspicion);
@@ -64,17 +65,14 @@ private:
     void degrade(std::size_t m, Diagnosis why);
     void follow_fast_lane();
     void leave_out(std::size_t m, std::uint64_t onset, std::uint64_t frames, const field::Blame& blame);
-    bool is_left_out(std::size_t m) const { return accusations_.left_out(m, frames_); }
     void limit();
-    bool is_limited(std::size_t m) const { return frames_ > 0 && frames_ <= limited_[m].until; }
+    bool is_limited(std::size_t m) const { return history_.count() > 0 && history_.count() <= limited_[m].until; }
     std::uint64_t onset_of(std::size_t m, std::size_t window) const;
     std::uint64_t frames_in(double seconds) const;
     void diagnose();
     void check_erratic();
     void check_class();
     bool may_learn() const;
-    std::uint64_t begin_of(std::size_t window) const;
-    std::size_t oldest_kept() const;
     void report(const Measurement& measurement, Assessment& assessment) const;
     void report_limited(Assessment& assessment) const;
     void report_degraded(Assessment& assessment) const;
@@ -97,24 +95,20 @@ private:
 
     AxisMask excluded_axes_ = 0;
     InstrumentSet excluded_;
-    std::array<Pending, 3> pending_{};  ///< oldest first
-    std::size_t pending_count_ = 0;
+    field::ThreeFrames<Pending> pending_;
     Eigen::Vector3d last_consensus_ = Eigen::Vector3d::Zero();
     bool learning_begun_ = false;
     std::uint64_t learning_from_ = 0;  ///< sequence
     std::uint64_t last_sequence_ = 0;
 
-    std::uint64_t frames_ = 0;  ///< compared
-    field::MatchedFilters::Ages ages_{};
-    std::array<std::uint64_t, field::ring_length> sequences_{};  ///< ring, of the frames compared
+    field::ComparedFrames history_;
     field::Accusations accusations_;
     std::array<Degraded, field::max_instruments> degraded_{};
     std::array<Limited, field::max_instruments> limited_{};
     double disturbance_ = 0;
     double certainty_ = 0;             ///< the largest of the newest frame
     double largest_lasting_ = 0;
-    std::uint64_t disagreement_until_ = 0;
-    std::uint64_t disagreement_onset_ = never;
+    field::Disagreement disagreement_;
 };
 
 }  // namespace quorient::fdi

@@ -32,7 +32,7 @@ void FieldDetector::State::judge(const field::Suspicions& found)
     disturbance_ = std::max(found.disturbance, field::disturbance_memory * disturbance_);
     largest_lasting_ = std::max(largest_lasting_, found.closest);
     certainty_ = found.largest().certainty;
-    const bool calm = accusations_.calm(frames_);
+    const bool calm = accusations_.calm(history_.count());
     const auto proved = found.proved();
     if (proved && proved->filter == field::Filter::delay && mount_ == Mount::structure) return degrade(proved->instrument, Diagnosis::delay);
     if (const auto contradicted = found.contradicted()) contradict(*contradicted);
@@ -44,7 +44,7 @@ void FieldDetector::State::judge(const field::Suspicions& found)
 /// Since when an instrument is left out, or else the begin of this window.
 std::uint64_t FieldDetector::State::onset_of(std::size_t m, std::size_t window) const
 {
-    return accusations_.onset_or(m, begin_of(window), frames_);
+    return accusations_.onset_or(m, history_.begin_of(window), history_.count());
 }
 
 void FieldDetector::State::contradict(const Suspicion& suspicion)
@@ -56,7 +56,7 @@ void FieldDetector::State::contradict(const Suspicion& suspicion)
 /// For so many frames and the time after them.
 void FieldDetector::State::leave_out(std::size_t m, std::uint64_t onset, std::uint64_t frames, const field::Blame& blame)
 {
-    const bool erratic = accusations_.leave_out(m, onset, frames, frames_, comparable());
+    const bool erratic = accusations_.leave_out(m, onset, frames, history_.count(), comparable());
     if (!diagnostics_.accused(m)) diagnostics_.accuse(m, blame);
     if (erratic && mount_ == Mount::board) name(m, onset, {blame.component, Diagnosis::erratic});
 }
@@ -70,7 +70,7 @@ void FieldDetector::State::limit()
         if (!saturation_.limited().has(m)) continue;
         Limited& limited = limited_[m];
         if (!is_limited(m)) limited = {pending_[0].frame.sequence, 0, 0};
-        limited.until = frames_ + 1 + frames_in(field::Accusations::calm_s);
+        limited.until = history_.count() + 1 + frames_in(field::Accusations::calm_s);
         limited.axes |= now.frame.near_range & array_[m].mask;
     }
 }
@@ -78,19 +78,19 @@ void FieldDetector::State::limit()
 void FieldDetector::State::follow_fast_lane()
 {
     const InstrumentSet compared = comparable();
-    if (frames_ == 0 || compared.size() < 3) return;
+    if (history_.count() == 0 || compared.size() < 3) return;
     const auto finding = fast_lane_->finding(comparison_.noise(), compared);
     if (!finding) return;
     for (std::size_t m = 0; m < array_.size(); ++m) {
         if (!compared.has(m) || (array_[m].mask & finding->axes) == 0) continue;
-        leave_out(m, accusations_.onset_or(m, std::min(finding->onset, last_sequence_), frames_), 1, {0, Diagnosis::bias});
+        leave_out(m, accusations_.onset_or(m, std::min(finding->onset, last_sequence_), history_.count()), 1, {0, Diagnosis::bias});
     }
 }
 
 void FieldDetector::State::name(std::size_t m, std::uint64_t onset, const field::Blame& blame)
 {
     accusations_.name(m, onset);
-    ages_[m] = 0;
+    history_.begin_again(m);
     diagnostics_.accuse(m, blame);
     const auto misled = static_cast<std::uint64_t>(std::lround(field::misled_s / cluster_.interval_s));
     if (onset <= learning_from_ + misled) forget_learned();
@@ -104,7 +104,7 @@ void FieldDetector::State::forget_learned()
     bool rested = true;
     for (std::size_t m = 0; m < array_.size(); ++m) rested = rested && (!sound.has(m) || start_.rested(m));
     comparison_.learning().reset(rested);
-    ages_.fill(0);
+    history_.begin_again();
 }
 
 void FieldDetector::State::check_erratic()
@@ -112,13 +112,13 @@ void FieldDetector::State::check_erratic()
     const auto erratic = comparison_.erratic().finding(comparable());
     if (!erratic) return;
     if (mount_ == Mount::structure) return degrade(erratic->instrument, Diagnosis::noise);
-    name(erratic->instrument, onset_of(erratic->instrument, oldest_kept()), {erratic->component, Diagnosis::erratic});
+    name(erratic->instrument, onset_of(erratic->instrument, history_.longest()), {erratic->component, Diagnosis::erratic});
 }
 
 /// Separate boxes are late or noisy without harm to the attitude.
 void FieldDetector::State::degrade(std::size_t m, Diagnosis why)
 {
-    degraded_[m] = {why, frames_ + frames_in(degraded_s)};
+    degraded_[m] = {why, history_.count() + frames_in(degraded_s)};
 }
 
 /// What has been learned stays within the class.
@@ -131,17 +131,16 @@ void FieldDetector::State::check_class()
             const double gain = learned.segment<3>(field::gain_x).cwiseAbs().maxCoeff();
             const double largest = start_.rested(m) ? figures_.largest_drift_rad_s : figures_.largest_bias_rad_s;
             if (std::abs(learned(field::bias)) <= largest && gain <= figures_.largest_gain_error) continue;
-            return name(m, onset_of(m, oldest_kept()), {c, gain > figures_.largest_gain_error ? Diagnosis::gain : Diagnosis::outside_class});
+            return name(m, onset_of(m, history_.longest()), {c, gain > figures_.largest_gain_error ? Diagnosis::gain : Diagnosis::outside_class});
         }
 }
 
 void FieldDetector::State::judge_two(InstrumentSet two)
 {
-    const Suspicion suspicion = filters_.disagreement(comparison_.sums(), comparison_.learning(), two, ages_, frames_);
+    const Suspicion suspicion = filters_.disagreement(comparison_.sums(), comparison_.learning(), two, history_.ages(), history_.count());
     certainty_ = suspicion.certainty;
     if (suspicion.certainty <= 1) return;
-    if (frames_ > disagreement_until_) disagreement_onset_ = begin_of(suspicion.window);
-    disagreement_until_ = std::max(disagreement_until_, frames_ + field::Windows::frames_between_looks(suspicion.window));
+    disagreement_.renew(history_.begin_of(suspicion.window), field::Windows::frames_between_looks(suspicion.window), history_.count());
 }
 
 }  // namespace quorient::fdi

@@ -16,25 +16,12 @@ void FieldDetector::State::report(const Measurement& measurement, Assessment& as
     const InstrumentSet compared = comparable();
     assessment.outcome = !learning_begun_ || compared.size() < 2 ? Outcome::warming_up : Outcome::healthy;
     assessment.saturated = saturation_.is_common();
-    for (std::size_t m = 0; m < array_.size(); ++m) {
-        if (accusations_.named(m)) {
-            assessment.outcome = Outcome::isolated;
-            assessment.isolated |= array_[m].mask;
-            assessment.onset = std::min(assessment.onset, accusations_.onset(m));
-        }
-        if (!accusations_.named(m) && !(is_left_out(m) && compared.has(m))) continue;
-        assessment.provisional |= array_[m].mask;
-        assessment.provisional_from = std::min(assessment.provisional_from, accusations_.onset(m));
-    }
+    for (std::size_t m = 0; m < array_.size(); ++m) accusations_.report(m, array_[m].mask, history_.count(), compared, assessment);
     report_limited(assessment);
-    if (assessment.outcome == Outcome::healthy && assessment.provisional != 0) {
-        assessment.outcome = Outcome::suspect;
-        assessment.isolated = assessment.provisional;
-        assessment.onset = assessment.provisional_from;
-    }
-    if (assessment.outcome == Outcome::healthy && compared.size() == 2 && frames_ > 0 && frames_ <= disagreement_until_) {
+    field::Accusations::report_suspects(assessment);
+    if (assessment.outcome == Outcome::healthy && compared.size() == 2 && disagreement_.lasts(history_.count())) {
         assessment.outcome = Outcome::ambiguous;
-        assessment.onset = disagreement_onset_;
+        assessment.onset = disagreement_.onset();
         for (std::size_t m = 0; m < array_.size(); ++m)
             if (compared.has(m)) assessment.add_candidate(array_[m].mask);
     }
@@ -67,7 +54,7 @@ void FieldDetector::State::report_degraded(Assessment& assessment) const
 {
     for (std::size_t axis = 0; axis < cluster_.size(); ++axis) {
         const Degraded& degraded = degraded_[cluster_.instrument[axis]];
-        if (frames_ >= degraded.until || (assessment.provisional & axis_bit(axis)) != 0) continue;
+        if (history_.count() >= degraded.until || (assessment.provisional & axis_bit(axis)) != 0) continue;
         assessment.degraded |= axis_bit(axis);
         if (assessment.diagnosis[axis].kind == Diagnosis::none) assessment.diagnosis[axis].kind = degraded.why;
     }
@@ -75,8 +62,8 @@ void FieldDetector::State::report_degraded(Assessment& assessment) const
 
 void FieldDetector::State::report_residuals(const Measurement& measurement, Assessment& assessment) const
 {
-    if (pending_count_ == 0) return;
-    const Pending& newest = pending_[pending_count_ - 1];
+    if (pending_.count() == 0) return;
+    const Pending& newest = pending_.newest();
     for (std::size_t axis = 0; axis < cluster_.size(); ++axis) {
         const std::size_t m = cluster_.instrument[axis];
         if (!newest.frame.present.has(m)) continue;

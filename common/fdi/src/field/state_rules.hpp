@@ -25,6 +25,12 @@ inline constexpr double misled_s = 1;
 
 inline constexpr std::uint64_t frames_between_diagnoses = 10;
 
+/// Time of the measurements that are missing between a frame and the latest one before it [s].
+inline double missing_s(std::uint64_t sequence, std::uint64_t last_sequence, double interval_s)
+{
+    return sequence > last_sequence ? static_cast<double>(sequence - last_sequence) * interval_s : 0;
+}
+
 /// What the comparison of any sensors needs to be known.
 inline tl::expected<void, std::string> check(const DetectorSettings& settings, const geometry::SensorCluster& cluster)
 {

@@ -51,7 +51,7 @@ PerAxis deviations_of(const AxisSums& sums, const Direction& shape)
     return values;
 }
 
-AxisSet through(AxisSet compared, const AxisFilters::Ages& age, std::size_t frames)
+AxisSet through(AxisSet compared, const field::Ages& age, std::size_t frames)
 {
     AxisSet set = compared;
     for (std::size_t i = 0; i < max_axes; ++i)
@@ -66,7 +66,7 @@ AxisFilters::AxisFilters(const geometry::Axes& axes, double interval_s, const Fi
 {
 }
 
-Suspicions AxisFilters::examine(const AxisWindows& sums, const Allowance& allowance, AxisSet compared, const Ages& age, std::uint64_t frame) const
+Suspicions AxisFilters::examine(const AxisWindows& sums, const Allowance& allowance, AxisSet compared, const field::Ages& age, std::uint64_t frame) const
 {
     Suspicions found;
     AxisParity parity;
@@ -139,7 +139,7 @@ bool AxisFilters::persists(const Window& window, std::size_t axis, const Directi
                              [&](std::size_t age) { return window.ring.total(age, energy); });
 }
 
-Suspicion AxisFilters::disagreement(const AxisWindows& sums, const Allowance& allowance, AxisSet compared, const Ages& age,
+Suspicion AxisFilters::disagreement(const AxisWindows& sums, const Allowance& allowance, AxisSet compared, const field::Ages& age,
                                     std::uint64_t frame) const
 {
     Suspicion most;

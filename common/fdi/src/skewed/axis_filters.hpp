@@ -1,5 +1,6 @@
 #pragma once
 
+#include "field/compared_frames.hpp"
 #include "field/suspicions.hpp"
 #include "quorient/fdi/field_detector.hpp"
 #include "skewed/axis_sums.hpp"
@@ -17,15 +18,13 @@ class AxisFilters {
 public:
     AxisFilters(const geometry::Axes& axes, double interval_s, const FieldRules& rules);
 
-    using Ages = std::array<std::uint64_t, max_axes>;
-
     /// @param age  frames that each axis has been compared for without a break
     /// @param frame  counts frames: which windows are due
     /// @returns suspicions of axes: `instrument` is the axis, `component` says nothing.
-    field::Suspicions examine(const AxisWindows& sums, const Allowance& allowance, AxisSet compared, const Ages& age, std::uint64_t frame) const;
+    field::Suspicions examine(const AxisWindows& sums, const Allowance& allowance, AxisSet compared, const field::Ages& age, std::uint64_t frame) const;
 
     /// The same for axes that leave one parity only, and cannot be told apart: `instrument` says nothing.
-    field::Suspicion disagreement(const AxisWindows& sums, const Allowance& allowance, AxisSet compared, const Ages& age, std::uint64_t frame) const;
+    field::Suspicion disagreement(const AxisWindows& sums, const Allowance& allowance, AxisSet compared, const field::Ages& age, std::uint64_t frame) const;
 
 private:
     struct Window;

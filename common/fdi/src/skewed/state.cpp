@@ -26,7 +26,8 @@ SkewedDetector::State::State(geometry::SensorCluster cluster, const DetectorSett
       saturation_(cluster_),
       comparison_(cluster_.axes, framing_.interval_s(), field::allowed_by(settings, framing_.interval_s()), rules),
       filters_(cluster_.axes, framing_.interval_s(), rules),
-      accusations_(cluster_.size(), least_in_use, framing_.interval_s())
+      accusations_(cluster_.size(), least_in_use, framing_.interval_s()),
+      history_(cluster_.size())
 {
 }
 
@@ -38,14 +39,13 @@ void SkewedDetector::State::reset()
     saturation_.reset();
     comparison_.reset();
     accusations_.reset();
-    pending_count_ = 0;
+    pending_.clear();
     learning_begun_ = false;
-    frames_ = 0;
-    ages_.fill(0);
+    history_.reset();
     for (std::size_t i = 0; i < cluster_.size(); ++i) acquit(i);
     disturbance_ = 0;
     certainty_ = 0;
-    disagreement_until_ = 0;
+    disagreement_.reset();
 }
 
 void SkewedDetector::State::exclude(AxisMask excluded)
@@ -54,7 +54,7 @@ void SkewedDetector::State::exclude(AxisMask excluded)
     for (std::size_t i = 0; i < cluster_.size(); ++i) {
         if (now.has(i) == excluded_.has(i)) continue;
         accusations_.acquit(i);
-        ages_[i] = 0;
+        history_.begin_again(i);
         if (now.has(i)) {
             accuse(i, Diagnosis::none);
         } else {  // trusted again: a newcomer
@@ -64,7 +64,7 @@ void SkewedDetector::State::exclude(AxisMask excluded)
     }
     if (now == excluded_) return;
     excluded_ = now;
-    pending_count_ = 0;
+    pending_.clear();
 }
 
 const AxisParity& SkewedDetector::State::parity_of(AxisSet set)
@@ -105,9 +105,8 @@ void SkewedDetector::State::advance(const skewed::AxisFrame& frame)
 {
     certainty_ = 0;
     if (!frame.follows) {
-        pending_count_ = 0;
-        const double missing = frame.sequence > last_sequence_ ? static_cast<double>(frame.sequence - last_sequence_) : 0;
-        if (learning_begun_) comparison_.wander(missing * cluster_.interval_s);
+        pending_.clear();
+        if (learning_begun_) comparison_.wander(field::missing_s(frame.sequence, last_sequence_, cluster_.interval_s));
     }
     last_sequence_ = frame.sequence;
     for (std::size_t i = 0; i < cluster_.size(); ++i)
@@ -115,7 +114,7 @@ void SkewedDetector::State::advance(const skewed::AxisFrame& frame)
     presence_.update(frame.present);
     start_with(frame);
     take_in(frame);
-    if (pending_count_ == pending_.size()) compare();
+    if (pending_.complete()) compare();
 }
 
 /// First seconds that end with this frame.
@@ -128,7 +127,7 @@ void SkewedDetector::State::start_with(const skewed::AxisFrame& frame)
         if (!ended.has(i)) continue;
         if (learning_begun_) comparison_.admit(i, start_.rested(i));
         rested = rested && start_.rested(i);
-        ages_[i] = 0;
+        history_.begin_again(i);
     }
     if (!learning_begun_) {
         learning_from_ = frame.sequence;
@@ -153,15 +152,10 @@ void SkewedDetector::State::take_in(const skewed::AxisFrame& frame)
     const AxisSet present = with_data - saturation_.blind();
     const AxisParity& parity = parity_of(present);
     if (parity.redundancy() == 0) {
-        pending_count_ = 0;
+        pending_.clear();
         return;
     }
-    if (pending_count_ == pending_.size()) {
-        pending_[0] = pending_[1];
-        pending_[1] = pending_[2];
-        --pending_count_;
-    }
-    Pending& newest = pending_[pending_count_++];
+    Pending& newest = pending_.add();
     newest.frame = frame;
     newest.present = present;
     newest.rates = rates;
@@ -169,14 +163,9 @@ void SkewedDetector::State::take_in(const skewed::AxisFrame& frame)
     last_rate_ = newest.rate;
 }
 
-void SkewedDetector::State::age_axes(AxisSet compared)
-{
-    for (std::size_t i = 0; i < cluster_.size(); ++i) ages_[i] = compared.has(i) ? ages_[i] + 1 : 0;
-}
-
 bool SkewedDetector::State::may_learn() const
 {
-    return rules_.learning && frames_ >= frames_in(field::noise_known_s) && accusations_.calm(frames_) &&
+    return rules_.learning && history_.count() >= frames_in(field::noise_known_s) && accusations_.calm(history_.count()) &&
            disturbance_ < field::largest_learned_from && comparable().size() > least_in_use;
 }
 
@@ -194,13 +183,11 @@ void SkewedDetector::State::compare()
     if (present.redundancy() == 0) return;
     const field::Motion motion{now.rate, now.rate - pending_[0].rate, pending_[2].rate - now.rate};
     comparison_.add(motion, {.rates = now.rates, .compared = compared, .parity = present, .learns = may_learn()});
-    sequences_[frames_ % sequences_.size()] = now.frame.sequence;
-    ++frames_;
-    age_axes(compared);
+    history_.add(now.frame.sequence, compared);
     diagnose();
 
     if (parity_of(compared).redundancy() == 1) return judge_last_parity();
-    judge(filters_.examine(comparison_.sums(), comparison_.allowance(), compared, ages_, frames_));
+    judge(filters_.examine(comparison_.sums(), comparison_.allowance(), compared, history_.ages(), history_.count()));
 }
 
 /// The accused in the middle one of three frames, against the others.
@@ -208,7 +195,7 @@ void SkewedDetector::State::diagnose()
 {
     for (std::size_t i = 0; i < cluster_.size(); ++i) {
         if (!accused_[i].fit.begun()) continue;
-        if (accusations_.named(i) || excluded_.has(i) || !accusations_.calm(frames_)) fit(i);
+        if (accusations_.named(i) || excluded_.has(i) || !accusations_.calm(history_.count())) fit(i);
         else acquit(i);
     }
 }
@@ -224,7 +211,7 @@ void SkewedDetector::State::fit(std::size_t axis)
     const auto rate_in = [&](const Pending& frame) { return comparison_.rate(frame.rates, parity, frame.rate); };
     Accused& accused = accused_[axis];
     accused.fit.add(now.rates[axis], rate_in(now), (rate_in(pending_[2]) - rate_in(pending_[0])) / (2 * framing_.interval_s()));
-    if (frames_ % field::frames_between_diagnoses != 0) return;
+    if (history_.count() % field::frames_between_diagnoses != 0) return;
     const skewed::Regressors deviations = comparison_.allowance().deviations();
     field::DiagnosisContext context{.rested = start_.rested(axis), .usual_noise = std::sqrt(comparison_.noise().typical()), .reference = {}};
     context.reference << deviations.head<4>(), deviations(skewed::delay_x);

@@ -2,6 +2,8 @@
 
 #include "field/accusations.hpp"
 #include "field/axis_diagnosis.hpp"
+#include "field/compared_frames.hpp"
+#include "field/disagreement.hpp"
 #include "field/presence.hpp"
 #include "skewed/axis_comparison.hpp"
 #include "skewed/axis_filters.hpp"
@@ -45,7 +47,6 @@ private:
     void start_with(const skewed::AxisFrame& frame);
     void take_in(const skewed::AxisFrame& frame);
     void compare();
-    void age_axes(AxisSet compared);
     void judge(const field::Suspicions& found);
     void judge_last_parity();
     void check_erratic();
@@ -60,14 +61,10 @@ private:
     void fit(std::size_t axis);
     void forget_learned();
     bool may_learn() const;
-    bool is_left_out(std::size_t axis) const { return accusations_.left_out(axis, frames_); }
     AxisSet comparable() const;
     const skewed::AxisParity& parity_of(AxisSet set);
     std::uint64_t frames_in(double seconds) const;
-    std::uint64_t begin_of(std::size_t window) const { return sequences_[(frames_ - window) % sequences_.size()]; }
-    std::size_t oldest_kept() const { return std::min<std::size_t>(frames_, field::longest_window); }
     void report(const Measurement& measurement, Assessment& assessment) const;
-    void report_accused(Assessment& assessment) const;
 
     geometry::SensorCluster cluster_;
     FieldRules rules_;
@@ -82,23 +79,19 @@ private:
     skewed::AxisParity parity_;  ///< of the latest set
 
     AxisSet excluded_;
-    std::array<Pending, 3> pending_{};  ///< oldest first
-    std::size_t pending_count_ = 0;
+    field::ThreeFrames<Pending> pending_;
     Eigen::Vector3d last_rate_ = Eigen::Vector3d::Zero();
     bool learning_begun_ = false;
     std::uint64_t learning_from_ = 0;  ///< sequence
     std::uint64_t last_sequence_ = 0;
 
-    std::uint64_t frames_ = 0;  ///< compared
-    skewed::AxisFilters::Ages ages_{};
-    std::array<std::uint64_t, field::ring_length> sequences_{};  ///< ring, of the frames compared
+    field::ComparedFrames history_;
     std::array<Accused, max_axes> accused_{};
     double disturbance_ = 0;
     double certainty_ = 0;  ///< the largest of the newest frame
     double largest_lasting_ = 0;
     AxisSet candidates_;    ///< that explain the present disagreement alike
-    std::uint64_t disagreement_until_ = 0;
-    std::uint64_t disagreement_onset_ = never;
+    field::Disagreement disagreement_;
 };
 
 }  // namespace quorient::fdi

@@ -24,14 +24,14 @@ void SkewedDetector::State::judge(const field::Suspicions& found)
     disturbance_ = std::max(found.disturbance, field::disturbance_memory * disturbance_);
     largest_lasting_ = std::max(largest_lasting_, found.closest);
     certainty_ = found.largest().certainty;
-    const bool calm = accusations_.calm(frames_);
+    const bool calm = accusations_.calm(history_.count());
     const auto proved = found.proved();
     const auto contradicted = found.contradicted();
     if (contradicted) leave_out(*contradicted);
     // Whatever part of another axis' fault looks like one of this axis: that one is contradicted more, even where it does not last yet.
     if (proved && contradicted && contradicted->instrument == proved->instrument) {
         const std::size_t axis = proved->instrument;
-        return name(axis, accusations_.onset_or(axis, begin_of(proved->window), frames_), kind_of(proved->filter));
+        return name(axis, accusations_.onset_or(axis, history_.begin_of(proved->window), history_.count()), kind_of(proved->filter));
     }
     if (found.lasting.certainty > 1) {
         AxisSet candidates;
@@ -46,8 +46,7 @@ void SkewedDetector::State::judge(const field::Suspicions& found)
 /// Several axes explain alike what cannot be explained without a fault.
 void SkewedDetector::State::disagree(AxisSet candidates, std::size_t window)
 {
-    if (frames_ > disagreement_until_) disagreement_onset_ = begin_of(window);
-    disagreement_until_ = std::max(disagreement_until_, frames_ + field::Windows::frames_between_looks(window));
+    disagreement_.renew(history_.begin_of(window), field::Windows::frames_between_looks(window), history_.count());
     candidates_ = candidates;
 }
 
@@ -55,7 +54,7 @@ void SkewedDetector::State::judge_last_parity()
 {
     const AxisSet compared = comparable();
     comparison_.wander(framing_.interval_s());
-    const field::Suspicion suspicion = filters_.disagreement(comparison_.sums(), comparison_.allowance(), compared, ages_, frames_);
+    const field::Suspicion suspicion = filters_.disagreement(comparison_.sums(), comparison_.allowance(), compared, history_.ages(), history_.count());
     certainty_ = suspicion.certainty;
     if (suspicion.certainty > 1) disagree(compared, suspicion.window);
 }
@@ -63,9 +62,9 @@ void SkewedDetector::State::judge_last_parity()
 void SkewedDetector::State::leave_out(const field::Suspicion& suspicion)
 {
     const std::size_t axis = suspicion.instrument;
-    const std::uint64_t onset = accusations_.onset_or(axis, begin_of(suspicion.window), frames_);
+    const std::uint64_t onset = accusations_.onset_or(axis, history_.begin_of(suspicion.window), history_.count());
     const bool erratic =
-        accusations_.leave_out(axis, onset, field::Windows::frames_between_looks(suspicion.window), frames_, comparable());
+        accusations_.leave_out(axis, onset, field::Windows::frames_between_looks(suspicion.window), history_.count(), comparable());
     if (!accused_[axis].fit.begun()) accuse(axis, kind_of(suspicion.filter));
     if (erratic) name(axis, onset, Diagnosis::erratic);
 }
@@ -73,7 +72,7 @@ void SkewedDetector::State::leave_out(const field::Suspicion& suspicion)
 void SkewedDetector::State::name(std::size_t axis, std::uint64_t onset, Diagnosis why)
 {
     accusations_.name(axis, onset);
-    ages_[axis] = 0;
+    history_.begin_again(axis);
     accuse(axis, why);
     if (onset <= learning_from_ + static_cast<std::uint64_t>(std::lround(field::misled_s / cluster_.interval_s))) forget_learned();
 }
@@ -85,7 +84,7 @@ void SkewedDetector::State::forget_learned()
     bool rested = true;
     for (std::size_t i = 0; i < cluster_.size(); ++i) rested = rested && (!sound.has(i) || start_.rested(i));
     comparison_.begin(rested);
-    ages_.fill(0);
+    history_.begin_again();
 }
 
 void SkewedDetector::State::accuse(std::size_t axis, Diagnosis why)
@@ -110,7 +109,7 @@ void SkewedDetector::State::acquit(std::size_t axis)
 void SkewedDetector::State::check_erratic()
 {
     const auto erratic = comparison_.erratic().finding(comparable());
-    if (erratic) name(erratic->instrument, accusations_.onset_or(erratic->instrument, begin_of(oldest_kept()), frames_), Diagnosis::erratic);
+    if (erratic) name(erratic->instrument, accusations_.onset_or(erratic->instrument, history_.begin_of(history_.longest()), history_.count()), Diagnosis::erratic);
 }
 
 /// What has been learned stays within the class.
@@ -124,7 +123,7 @@ void SkewedDetector::State::check_class()
             if (parity.set().has(i)) learned[i] = comparison_.learned(i)(parameter);
         const auto outside = outside_class(parameter, parity.residual(learned), parity);
         if (!outside) continue;
-        return name(*outside, accusations_.onset_or(*outside, begin_of(oldest_kept()), frames_),
+        return name(*outside, accusations_.onset_or(*outside, history_.begin_of(history_.longest()), history_.count()),
                     parameter == skewed::bias ? Diagnosis::outside_class : Diagnosis::gain);
     }
 }
@@ -159,39 +158,22 @@ void SkewedDetector::State::report(const Measurement& measurement, Assessment& a
     assessment.outcome = !learning_begun_ || compared.size() < 4 ? Outcome::warming_up : Outcome::healthy;
     const AxisSet within = compared - saturation_.blind();
     assessment.saturated = !saturation_.blind().empty() && !skewed::spans_space(cluster_.axes, within);
-    report_accused(assessment);
-    if (assessment.outcome == Outcome::healthy && frames_ > 0 && frames_ <= disagreement_until_) {
+    for (std::size_t i = 0; i < cluster_.size(); ++i) {
+        assessment.diagnosis[i] = accused_[i].diagnosis;
+        accusations_.report(i, axis_bit(i), history_.count(), compared, assessment);
+    }
+    field::Accusations::report_suspects(assessment);
+    if (assessment.outcome == Outcome::healthy && disagreement_.lasts(history_.count())) {
         assessment.outcome = Outcome::ambiguous;
-        assessment.onset = disagreement_onset_;
+        assessment.onset = disagreement_.onset();
         for (std::size_t i = 0; i < cluster_.size(); ++i)
             if (candidates_.has(i) && compared.has(i)) assessment.add_candidate(axis_bit(i));
     }
     if (assessment.isolated != 0) assessment.add_candidate(assessment.isolated);
-    if (pending_count_ < 2) return;
+    if (pending_.count() < 2) return;
     for (std::size_t i = 0; i < cluster_.size(); ++i) {
         assessment.residual[i] = comparison_.residual()[i] * measurement.interval_s;
         assessment.bound[i] = comparison_.frame_bound() * measurement.interval_s;
-    }
-}
-
-void SkewedDetector::State::report_accused(Assessment& assessment) const
-{
-    const AxisSet compared = comparable();
-    for (std::size_t i = 0; i < cluster_.size(); ++i) {
-        assessment.diagnosis[i] = accused_[i].diagnosis;
-        if (accusations_.named(i)) {
-            assessment.outcome = Outcome::isolated;
-            assessment.isolated |= axis_bit(i);
-            assessment.onset = std::min(assessment.onset, accusations_.onset(i));
-        }
-        if (!accusations_.named(i) && !(is_left_out(i) && compared.has(i))) continue;
-        assessment.provisional |= axis_bit(i);
-        assessment.provisional_from = std::min(assessment.provisional_from, accusations_.onset(i));
-    }
-    if (assessment.outcome == Outcome::healthy && assessment.provisional != 0) {
-        assessment.outcome = Outcome::suspect;
-        assessment.isolated = assessment.provisional;
-        assessment.onset = assessment.provisional_from;
     }
 }
 
