@@ -307,6 +307,15 @@ TEST(FieldDetector, leaves_an_instrument_out_while_the_others_measure_more_than_
     }
 }
 
+TEST(FieldDetector, names_an_instrument_that_ends_below_the_range_that_is_stated)
+{
+    FieldScene scene = scene_of_unequal_ranges(3, 15);
+    scene.cluster.range.setConstant(FieldScene::range_deg_s * degree);
+    const Told told = play(scene, *detector_on(scene), 13);
+    EXPECT_EQ(told.named, axes_of(0));
+    EXPECT_GT(told.named_at, 800U) << "not before the turn";
+}
+
 TEST(FieldDetector, says_of_two_instruments_that_they_disagree_and_never_which_is_wrong)
 {
     FieldScene scene(2, 15);

@@ -177,6 +177,16 @@ TEST_F(Surveyed, describes_the_range_that_an_axis_stayed_at)
     EXPECT_EQ(range[5], 0);
 }
 
+TEST(SurveyedRange, is_the_stated_one_even_where_an_axis_ends_below_it)
+{
+    SurveyedInstrument surveyed;
+    EXPECT_EQ(surveyed.range_rad_s(0), 0);
+    surveyed.figures.range_reached[0] = Clipping{4.36, 100, 0, 0};
+    EXPECT_EQ(surveyed.range_rad_s(0), 4.36);
+    surveyed.instrument.range_rad_s = 34.9;
+    EXPECT_EQ(surveyed.range_rad_s(0), 34.9) << "a live system knows no other, and its replay must judge alike";
+}
+
 TEST_F(Surveyed, keeps_a_bounded_part_of_a_long_log)
 {
     auto found = survey(std::vector<std::filesystem::path>{write("a.csv", log_of(0.01, 599, 0, 0, 3))}, {});
