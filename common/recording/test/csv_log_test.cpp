@@ -1,11 +1,7 @@
 #include "instrument_log_test.hpp"
-#include "line_source.hpp"
 
 #include <gmock/gmock.h>
-#include <bit>
 #include <cmath>
-#include <cstdlib>
-#include <random>
 #include <sstream>
 
 namespace quorient::recording {
@@ -59,39 +55,6 @@ TEST(CsvLog, reads_every_way_of_writing_a_table)
     expect_the_rows(samples_of("\"time_s\",\"gx [deg/s]\",\"gy [deg/s]\",\"gz [deg/s]\"\n" + plain.substr(plain.find('\n') + 1)), 20, "log");
     expect_the_rows(samples_of("device: X\nserial,12\n# a remark\n" + plain + "\n\n"), 20, "log");
     expect_the_rows(samples_of("# " + plain), 20, "log");
-}
-
-/// Any number that a table may hold, most of them short decimals.
-std::string any_number(std::mt19937_64& random)
-{
-    const std::size_t digits = 1 + random() % 19;
-    const std::size_t point = random() % (digits + 2);  // at most as many stand behind none
-    std::string text = random() % 3 == 0 ? "-" : "";
-    for (std::size_t i = 0; i < digits; ++i) {
-        if (i == point) text += '.';
-        text += static_cast<char>('0' + (random() % 4 == 0 ? 0 : random() % 10));
-    }
-    if (random() % 8 == 0) text += "e-" + std::to_string(random() % 40);
-    return text;
-}
-
-TEST(Number, is_the_double_that_is_nearest_to_the_text)
-{
-    std::mt19937_64 random(11);
-    for (int i = 0; i < 200'000; ++i) {
-        const std::string text = any_number(random);
-        const auto value = number(text);
-        ASSERT_TRUE(value) << text;
-        const double nearest = std::strtod(text.c_str(), nullptr);
-        ASSERT_EQ(std::bit_cast<std::uint64_t>(*value), std::bit_cast<std::uint64_t>(nearest)) << text;
-    }
-}
-
-TEST(Number, is_nothing_where_the_text_is_none)
-{
-    for (const char* text : {"", "-", ".", "-.", "1.2.3", "1-2", "1 2", "--1", "12a", "0x10", "1,5", "1e"}) EXPECT_FALSE(number(text)) << text;
-    for (const char* text : {"+1.5", "1.5", "1.50", "01.5", "15e-1"}) EXPECT_EQ(number(text), 1.5) << text;
-    EXPECT_TRUE(std::signbit(*number("-0.0")));
 }
 
 TEST(CsvLog, reads_cells_between_quotes_with_the_delimiter_inside)
@@ -378,50 +341,6 @@ TEST(CsvLog, says_what_a_header_must_name)
     EXPECT_THAT(refusal_of("1,2,3,4\n5,6,7,8\n"), AllOf(HasSubstr("log.csv:1:"), HasSubstr("time_s,g0x")));
     EXPECT_THAT(refusal_of("gx_dps,gy_dps,gz_dps,u\n1,2,3,4\n"), HasSubstr("none of a time"));
     EXPECT_THAT(refusal_of("t_s,gx_dps,gy_dps,gz_dps\n1,1,2,3\n1,1,2,3\n"), HasSubstr("one after the other"));
-}
-
-struct FieldCase {
-    const char* file;
-    std::size_t rows;
-    std::vector<std::string> names;
-    const char* unit;
-};
-
-TEST(CsvLog, reads_the_real_tables_as_their_owners_mean_them)
-{
-    if (!std::filesystem::exists(field_dir())) GTEST_SKIP() << "no logs under " << field_dir();
-    const std::vector<FieldCase> cases{{"cats_drone_healthy.csv", 3 * 3722, {"g0", "g1", "g2"}, "rad/s"},
-                                       {"cats_drone_soft_axis_1.csv", 3 * 4249, {"g0", "g1", "g2"}, "rad/s"},
-                                       {"cats_rocket_pyro_long.csv", 4416, {"IMU0", "IMU1"}, "deg/s"},
-                                       {"cats_rocket_healthy_long.csv", 28094, {"IMU1", "IMU2", "IMU0"}, "deg/s"},
-                                       {"rover_5_imus/imu1.csv", 7412, {"imu1"}, "rad/s"},
-                                       {"rover_5_imus/imu5.csv", 7242, {"imu5"}, "rad/s"}};
-    for (const FieldCase& given : cases) {
-        SCOPED_TRACE(given.file);
-        const Samples log = samples_of(open_instruments(field_dir() / given.file));
-        EXPECT_EQ(log.names(), given.names);
-        EXPECT_EQ(log.samples.size(), given.rows);
-        EXPECT_TRUE(log.problems.empty());
-        EXPECT_THAT(log.remarks, Contains(HasSubstr(std::string("gyros read as ") + given.unit)));
-    }
-    EXPECT_THAT(open_instruments(field_dir() / "cats_drop_counts_long.csv").error(), HasSubstr("--lsb-per-deg-s"));
-    const Samples drop = samples_of(open_instruments(field_dir() / "cats_drop_counts_long.csv", {{}, 16.4, {}}));
-    double fastest = 0;
-    for (const InstrumentSample& sample : drop.samples) fastest = std::max(fastest, std::abs(sample.rate_rad_s[2]));
-    EXPECT_LT(fastest / degree, 850);
-}
-
-TEST(CsvLog, reads_xsens_dots_with_their_own_clock)
-{
-    const auto folder = data_dir() / "ansfl_quadrotor_4xDOT" / "StraightLine" / "RAW";
-    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no recordings under " << data_dir();
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-        SCOPED_TRACE(entry.path().filename().string());
-        const Samples log = samples_of(open_instruments(entry.path(), {RateUnit::deg_s, {}, {}}));
-        ASSERT_EQ(log.instruments.size(), 1U);
-        EXPECT_EQ(log.instruments[0].stamps, StampKind::sampling);
-        EXPECT_GT(log.samples.size(), 17'000U);
-    }
 }
 
 }  // namespace
