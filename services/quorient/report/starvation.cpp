@@ -10,6 +10,12 @@ namespace quorient::report {
 
 namespace {
 
+/// One that had given out nothing before has only begun, or waits for its input as a voter does for attitudes.
+bool gave_before(const Interval& service)
+{
+    return service.first.published > 0;
+}
+
 /// The counts of two processes are not of the same moment, and a status comes twice a second.
 constexpr double enough = 0.95;
 
@@ -52,7 +58,7 @@ std::vector<Starving> find_starving(std::span<const Interval> services)
     const double sensor_hz = reference_hz(services);
     for (const auto& service : services) {
         if (!gives_one_per_frame(service.latest) || state_of(service.latest) != ServiceState::running) continue;
-        if (!service.is_measured() || service.rate_hz() >= enough * sensor_hz) continue;
+        if (!gave_before(service) || !service.is_measured() || service.rate_hz() >= enough * sensor_hz) continue;
         found.push_back({std::string{text_of(service.latest.name)}, service.rate_hz(), sensor_hz});
     }
     return found;

@@ -26,7 +26,7 @@ struct Starving {
 };
 
 /// The detectors, integrators and voters that published less than 95 % as many samples as the sensor sent frames. Where no sensor answers,
-/// the quickest service stands in for it.
+/// the quickest service stands in for it. One that had published nothing at the first status has only begun, and is not judged.
 std::vector<Starving> find_starving(std::span<const Interval> services);
 
 /// One line each.

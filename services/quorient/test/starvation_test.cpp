@@ -68,6 +68,14 @@ TEST(Starvation, is_not_said_of_a_service_that_has_not_begun)
     EXPECT_TRUE(find_starving(std::vector{service("sensor", 101, ServiceRole::sensor, 1000), starting}).empty());
 }
 
+TEST(Starvation, is_not_said_of_a_voter_that_gave_out_its_first_frame_meanwhile)
+{
+    auto voter = service("voter-1", 102, ServiceRole::voter, 0);
+    voter.first.published = 0;
+    voter.latest.published = 1;
+    EXPECT_TRUE(find_starving(std::vector{service("sensor", 101, ServiceRole::sensor, 1000), voter}).empty());
+}
+
 }  // namespace
 
 }  // namespace quorient::report
