@@ -8,7 +8,7 @@ import signal
 import sys
 import time
 
-from integration_tests.harness.judge import disordered, errors, first_judged, gaps, missing_frames
+from integration_tests.harness.judge import FINAL_ERROR_RAD, disordered, errors, first_judged, gaps, missing_frames
 from integration_tests.harness.pipeline import ALL_LANES, RATE_HZ, NotInTime, Pipeline, ask_for_priority, at_least_once, rate_between
 from integration_tests.harness.resources import memory_and_descriptors
 from integration_tests.harness.steady import Steady
@@ -23,7 +23,6 @@ SIGNALS = ("kill", "stop")
 STOPPED_S = 0.5
 BACK_WITHIN_S = 15
 ERROR_RAD_S = 0.2  # largest in an interval: three frames of the largest fault here and what leaves with it
-FINAL_ERROR_RAD = 1e-5
 LEASE_S = 0.07  # a lease of `voted`, max(50 ms, 3 intervals), and 20 ms
 GROWTH_MIB = 8
 SKIPPED = 77  # as ctest knows it

@@ -14,7 +14,7 @@ from typing import Callable
 
 from integration_tests.containers.containers import Containers
 from integration_tests.containers.observed import Observed
-from integration_tests.harness.judge import disordered, errors, largest_gap, missing_frames
+from integration_tests.harness.judge import FINAL_ERROR_RAD, disordered, errors, largest_gap, missing_frames
 from integration_tests.harness.steady import STEADY_FRAMES, Steady
 from integration_tests.harness.streams import DEGRADED, FULL
 from integration_tests.containers.trace import steps_text, table
@@ -34,7 +34,6 @@ PLAIN_GAP_FRAMES = int((LEASE_S + 0.02) / INTERVAL_S)  # the README's promise: a
 FRAMES_TO_ISOLATION = 3  # the README's promise; confirmation is 2 of 3 frames
 FRAMES_TO_DEGRADED = 15  # silence of 5 intervals, then the level's window of 10 frames
 RETURN_S = 20.0  # as for healed networks (integration_tests/networks): start or repair, discovery, 200 agreeing frames
-FINAL_ERROR_RAD = 1e-5  # as in the kill matrix
 # Least squares on the dodecahedron, H'H = 2 I, turns a fault of one axis into half of it.
 CONTAMINATION_RAD = FAULT_RAD_S * INTERVAL_S / 2
 LARGEST_ERROR_RAD = FINAL_ERROR_RAD + (FRAMES_TO_ISOLATION + 1) * CONTAMINATION_RAD  # as in the kill matrix

@@ -4,6 +4,8 @@ from dataclasses import dataclass, field
 from integration_tests.harness.quaternion import angle
 from integration_tests.harness.streams import HELD
 
+FINAL_ERROR_RAD = 1e-5
+
 
 @dataclass
 class Figures:
@@ -112,3 +114,12 @@ def judge(merged, plain, truths, summary, since, end, faulty, voters, full):
     until = [frames_until([sample for sample in merged if sample.voter == voter], since, full) for voter in voters]
     figures.frames_to_full = None if None in until else max(until)
     return figures
+
+
+def errors_beyond(figures, has_fault):
+    """Yields a sentence for each error of the attitude beyond its bound: what the faulty axis adds until it is isolated counts on top."""
+    allowed_rad = FINAL_ERROR_RAD + ((figures.frames_to_isolation + 1) * figures.contamination_rad if has_fault else 0)
+    if figures.largest_error_rad > allowed_rad:
+        yield f"largest error {figures.largest_error_rad:.2e} rad, {allowed_rad:.2e} allowed"
+    if figures.final_error_rad > FINAL_ERROR_RAD:
+        yield f"final error {figures.final_error_rad:.2e} rad, {FINAL_ERROR_RAD:.0e} allowed"

@@ -8,13 +8,12 @@ from typing import Callable, NamedTuple
 from integration_tests.networks.hosts import Hosts, not_permitted
 from integration_tests.networks.load import Load
 from integration_tests.networks.spread_pipeline import Place, SpreadPipeline
-from integration_tests.harness.judge import Figures, judge
+from integration_tests.harness.judge import Figures, errors_beyond, judge
 from integration_tests.harness.pipeline import ALL_LANES, RATE_HZ, NotInTime, ask_for_priority, at_least_once, rate_between
 from integration_tests.harness.steady import Steady
 from integration_tests.harness.streams import DEGRADED, HELD, SINGLE
 
 FAULTY_AXIS = 1
-FINAL_ERROR_RAD = 1e-5
 FAULT_AFTER_S = 0.5  # after the harm begins: the lane that is cut off learns of the fault when the harm is over
 NOTICED_S = 0.5  # after which nothing but DEGRADED is right while a lane is cut off
 LANE_NAMES = "abc"
@@ -152,11 +151,7 @@ def bounds_broken(cell, figures, during):
         yield f"{figures.disordered} samples out of order"
     if figures.missing:
         yield f"{figures.missing} voted frames missing"
-    allowed_rad = FINAL_ERROR_RAD + ((figures.frames_to_isolation + 1) * figures.contamination_rad if cell.fault else 0)
-    if figures.largest_error_rad > allowed_rad:
-        yield f"largest error {figures.largest_error_rad:.2e} rad, {allowed_rad:.2e} allowed"
-    if figures.final_error_rad > FINAL_ERROR_RAD:
-        yield f"final error {figures.final_error_rad:.2e} rad, {FINAL_ERROR_RAD:.0e} allowed"
+    yield from errors_beyond(figures, cell.fault)
     if figures.frames_to_full is None:
         yield "never back"
     if cell.without:

@@ -8,12 +8,12 @@ import subprocess
 import sys
 import time
 
-from integration_tests.harness.judge import first_judged, judge, missing_frames
+from integration_tests.harness.judge import errors_beyond, first_judged, judge, missing_frames
 from integration_tests.harness.pipeline import ALL_LANES, NotInTime, Pipeline, ask_for_priority
 from integration_tests.harness.processes import ROOT
 from integration_tests.harness.steady import Steady
 from integration_tests.harness.streams import SINGLE
-from integration_tests.kill_matrix.run_cell import FINAL_ERROR_RAD, LEASE_FRAMES
+from integration_tests.kill_matrix.run_cell import LEASE_FRAMES
 
 OTHER = {"bookworm": "trixie", "trixie": "bookworm"}
 RETURN_TIMEOUT_S = 40  # a command in the root begins some seconds later than on the machine itself
@@ -180,11 +180,7 @@ def bounds_broken(system, figures, summary, releases, faulty):
         yield f"{figures.wrong_isolations} wrong isolations"
     if figures.plain_gap > LEASE_FRAMES:  # at the end of voter-1
         yield f"a plain subscriber misses {figures.plain_gap} frames, {LEASE_FRAMES} allowed"
-    allowed_rad = FINAL_ERROR_RAD + ((figures.frames_to_isolation + 1) * figures.contamination_rad if faulty else 0)
-    if figures.largest_error_rad > allowed_rad:
-        yield f"largest error {figures.largest_error_rad:.2e} rad, {allowed_rad:.2e} allowed"
-    if figures.final_error_rad > FINAL_ERROR_RAD:
-        yield f"final error {figures.final_error_rad:.2e} rad, {FINAL_ERROR_RAD:.0e} allowed"
+    yield from errors_beyond(figures, faulty)
     for lane, seen in summary["lanes"].items():
         if seen["isolated"] != ([FAULTY_AXIS] if faulty else []):
             yield f"lane {lane} isolated {seen['isolated']}"
