@@ -307,6 +307,32 @@ TEST(FieldDetector, leaves_an_instrument_out_while_the_others_measure_more_than_
     }
 }
 
+TEST(FieldDetector, leaves_nobody_out_while_some_of_equal_ranges_reach_theirs_before_the_others)
+{
+    for (const std::size_t instruments : {3U, 8U}) {
+        FieldScene scene(instruments, 18, {.gain = 0.012});
+        // So slowly to the range and back that gains decide for a while which instruments are near it.
+        scene.motion = [](double t) -> Eigen::Vector3d {
+            return FieldScene::flight(t) + Eigen::Vector3d(0, 0, t > 8 && t < 28 ? FieldScene::range_deg_s * std::sin(std::numbers::pi * (t - 8) / 20) : 0);
+        };
+        unsigned near_range = 0;
+        unsigned unanimous = 0;
+        const auto detector = detector_on(scene);
+        Assessment assessment;
+        while (scene.time_s() < 31) {
+            const Measurement measurement = scene.next();
+            std::size_t near = 0;
+            for (std::size_t m = 0; m < instruments; ++m)
+                near += std::abs(measurement.increment[3 * m + 2]) > 0.975 * FieldScene::range_deg_s * degree * frame_s ? 1 : 0;
+            near_range += near > 0 ? 1U : 0U;
+            unanimous += near == instruments ? 1U : 0U;
+            detector->assess(measurement, assessment);
+            ASSERT_EQ(assessment.provisional, 0U) << "at " << scene.time_s() << " s";
+        }
+        EXPECT_GT(near_range, unanimous + 10) << "the scene has no frame in which only some are at their range";
+    }
+}
+
 TEST(FieldDetector, names_an_instrument_that_ends_below_the_range_that_is_stated)
 {
     FieldScene scene = scene_of_unequal_ranges(3, 15);

@@ -1,5 +1,7 @@
 #include "field/saturation.hpp"
 
+#include "field/order.hpp"
+
 #include <cmath>
 
 namespace quorient::fdi::field {
@@ -36,31 +38,41 @@ bool Saturation::borne_out(std::size_t axis, const Frame& frame, InstrumentSet c
     return false;
 }
 
+bool Saturation::is_exceeded(std::size_t axis, const Frame& frame, InstrumentSet compared) const
+{
+    const auto row = axes_.row(static_cast<Eigen::Index>(axis));
+    InstrumentSet free = compared & frame.present;
+    for (std::size_t other = 0; other < cluster_.size(); ++other)
+        if (has_axis(frame.near_range, other) && std::abs(row.dot(axes_.row(static_cast<Eigen::Index>(other)))) > touching)
+            free.remove(cluster_.instrument[other]);
+    PerInstrument rates{};
+    std::size_t n = 0;
+    for (std::size_t m = 0; m < max_instruments; ++m)
+        if (free.has(m)) rates[n++] = row.dot(frame.rate.col(static_cast<Eigen::Index>(m)));
+    return n > 0 && std::abs(median(rates.data(), n)) > cluster_.range(static_cast<Eigen::Index>(axis));
+}
+
 void Saturation::update(const Frame& frame, InstrumentSet compared, const Eigen::Vector3d& consensus)
 {
     std::array<InstrumentSet, component_count> beyond;
-    std::array<InstrumentSet, component_count> believed_beyond;
+    limited_ = {};
     std::array<bool, component_count> blinded{};
     for (std::size_t axis = 0; frame.near_range != 0 && axis < cluster_.size(); ++axis) {
         const std::size_t m = cluster_.instrument[axis];
         if (!has_axis(frame.near_range, axis) || !compared.has(m) || !frame.present.has(m)) continue;
         const bool believed = borne_out(axis, frame, compared, consensus);
+        if (believed && is_exceeded(axis, frame, compared)) limited_.add(m);
         for (std::size_t c = 0; c < component_count; ++c) {
             const double share = std::abs(axes_(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(c)));
             if (share < touching) continue;
             blinded[c] = blinded[c] || believed;
-            if (share <= alike) continue;
-            beyond[c].add(m);
-            if (believed) believed_beyond[c].add(m);
+            if (share > alike) beyond[c].add(m);
         }
     }
     common_ = false;
-    limited_ = {};
     for (std::size_t c = 0; c < component_count; ++c) {
         const InstrumentSet here = compared & frame.present;
-        const bool all = here.size() >= 2 && beyond[c] == here;
-        common_ = common_ || all;
-        if (!all) limited_ = limited_ | believed_beyond[c];
+        common_ = common_ || (here.size() >= 2 && beyond[c] == here);
         if (blinded[c]) blind_frames_[c] = frames_blinded;
         else if (blind_frames_[c] > 0) --blind_frames_[c];
     }

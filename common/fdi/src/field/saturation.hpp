@@ -20,13 +20,15 @@ public:
     /// All instruments are at their range along one direction: none is faulty, and the body's rate is unknown.
     bool is_common() const { return common_; }
 
-    /// At their range in this frame, borne out, along a direction in which others are not: what they measure is less than the rate.
+    /// At their range in this frame, borne out, while those that are not measure more than that range along the same direction. Where all ranges
+    /// are alike, some reach theirs a little before others, and what they measure is as good.
     InstrumentSet limited() const { return limited_; }
 
     void reset();
 
 private:
     bool borne_out(std::size_t axis, const Frame& frame, InstrumentSet compared, const Eigen::Vector3d& consensus) const;
+    bool is_exceeded(std::size_t axis, const Frame& frame, InstrumentSet compared) const;
 
     const geometry::SensorCluster& cluster_;
     const geometry::Axes& axes_;
