@@ -32,7 +32,7 @@ void votes(const std::uint8_t* data, std::size_t size)
     std::uint64_t sequence = 0, last_output = 0;
     const auto drain = [&] {
         VotedAttitude owned;
-        while (voter.next_owned(owned)) continue;
+        while (voter.next_owned(owned, now)) continue;
         VotedAttitude output;
         while (voter.next_output(output)) {
             REQUIRE(output.output_sequence > last_output);

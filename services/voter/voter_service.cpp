@@ -66,7 +66,7 @@ bool VoterService::look_at_readiness()
 void VoterService::drain()
 {
     VotedAttitude owned;
-    while (brain_.next_owned(owned)) {
+    while (brain_.next_owned(owned, node_.clock().steady_ns())) {
         stamp(owned);
         voted_.publish(owned);
     }

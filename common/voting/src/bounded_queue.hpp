@@ -39,6 +39,8 @@ public:
         return true;
     }
 
+    void clear() { size_ = 0; }
+
     std::size_t size() const { return size_; }
 
     /// @param index  0 = the oldest

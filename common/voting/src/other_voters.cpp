@@ -150,6 +150,13 @@ Identity OtherVoters::weaker_reached() const
     return reached;
 }
 
+bool OtherVoters::weaker_fresh(std::int64_t now_ns) const
+{
+    return std::any_of(others_.begin(), others_.end(), [&](const OtherVoter& other) {
+        return !other.stronger() && other.seen() && now_ns <= other.fresh_until_ns(durations_);
+    });
+}
+
 std::uint64_t OtherVoters::next_output_sequence(Identity identity, std::uint64_t own_last) const
 {
     if (own_last == 0 && !seen()) return identity.sequence + 1;

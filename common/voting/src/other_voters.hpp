@@ -93,6 +93,9 @@ public:
     /// The farthest frame of all weaker voters, fresh or not.
     Identity weaker_reached() const;
 
+    /// A weaker voter is fresh.
+    bool weaker_fresh(std::int64_t now_ns) const;
+
     /// The farthest output of all.
     const Position& reached() const { return reached_; }
 

@@ -16,13 +16,15 @@ OwnedStream::OwnedStream(const VoterSettings& settings, const Durations& duratio
       lease_ns_(durations.lease_ns),
       good_frames_required_(settings.good_frames_before_owning),
       listen_frames_(static_cast<unsigned>(settings.listen_s / settings.interval_s)),
-      not_before_ns_(std::numeric_limits<std::int64_t>::min())
+      not_before_ns_(std::numeric_limits<std::int64_t>::min()),
+      punctuality_(durations.interval_ns)
 {
 }
 
 void OwnedStream::push(const VotedAttitude& output, bool repeated, std::int64_t now_ns)
 {
     waiting_.push() = {output, now_ns + interval_ns_, repeated};
+    if (!repeated) punctuality_.see(identity_of(output), now_ns);
 }
 
 void OwnedStream::release(const OtherVoters& others, std::int64_t now_ns)
@@ -32,7 +34,7 @@ void OwnedStream::release(const OtherVoters& others, std::int64_t now_ns)
     for (const Waiting* first = waiting_.front(); first != nullptr; first = waiting_.front()) {
         const bool leader_was_here = leader == nullptr || leader->position().identity >= identity_of(first->output);
         if (!leader_was_here && now_ns < first->due_ns) return;
-        if (may_write(*first, others)) ready_.push() = first->output;
+        if (may_write(*first, others, now_ns)) ready_.push() = first->output;
         waiting_.drop_front();
         consider_right(others, now_ns);
     }
@@ -43,6 +45,8 @@ void OwnedStream::start_over(std::int64_t now_ns)
     right_ = Right::proving;
     good_frames_ = held_ = 0;
     not_before_ns_ = now_ns + lease_ns_;
+    ready_.clear();
+    punctuality_ = Punctuality(interval_ns_);
 }
 
 std::int64_t OwnedStream::deadline_ns() const
@@ -59,10 +63,10 @@ void OwnedStream::consider_right(const OtherVoters& others, std::int64_t now_ns)
 }
 
 /// Asked once for every output, in order.
-bool OwnedStream::may_write(const Waiting& waiting, const OtherVoters& others)
+bool OwnedStream::may_write(const Waiting& waiting, const OtherVoters& others, std::int64_t now_ns)
 {
     const Position position = position_of(waiting.output);
-    if (right_ == Right::holding && !must_hold(position.identity, others)) right_ = Right::writing;
+    if (right_ == Right::holding && !must_hold(position.identity, others, now_ns)) right_ = Right::writing;
     if (right_ != Right::writing) {
         held_ += right_ == Right::holding ? 1 : 0;
         good_frames_ += waiting.repeated ? 0 : 1;
@@ -77,11 +81,15 @@ bool OwnedStream::may_write(const Waiting& waiting, const OtherVoters& others)
 }
 
 /// A weaker voter has published this frame: the first frame of a new owner would be a step back for readers. A weaker voter that is merely
-/// quicker must not keep the owner away for good; with one that is farther by frames, the owner has to catch up first.
-bool OwnedStream::must_hold(Identity identity, const OtherVoters& others) const
+/// quicker must not keep the owner away for good; with one that is farther by frames, the owner has to catch up first. Where a frame is
+/// late here, a weaker voter may have ceased to wait for it, and what it has published is still on its way.
+bool OwnedStream::must_hold(Identity identity, const OtherVoters& others, std::int64_t now_ns) const
 {
     const Identity theirs = others.weaker_reached();
-    if (identity > theirs) return false;
+    if (identity > theirs) {
+        const bool late = punctuality_.lateness_ns(identity, now_ns) > interval_ns_ / 2;
+        return late && others.weaker_fresh(now_ns) && held_ < longest_lag_frames;
+    }
     const bool lags = theirs.epoch > identity.epoch || theirs.sequence > identity.sequence + 1;
     return held_ < (lags ? longest_lag_frames : good_frames_required_);
 }

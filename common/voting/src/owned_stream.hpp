@@ -2,6 +2,7 @@
 
 #include "bounded_queue.hpp"
 #include "other_voters.hpp"
+#include "punctuality.hpp"
 
 #include <cstdint>
 
@@ -12,7 +13,7 @@ namespace quorient::voting {
 ///
 /// 1. A voter has the right to write only after a number of good frames. One that has never received a stronger voter first gives both
 ///    `listen_s` to discover each other. An absence ends the right, and it returns after one lease at the earliest.
-/// 2. It begins with a frame that no voter has published yet.
+/// 2. It begins with a frame that no voter has published yet, and early enough that no weaker one can have ceased to wait for it.
 /// 3. A frame is written in the order of strength: after the leader has published it, or an interval late where the leader does not.
 class OwnedStream {
 public:
@@ -26,7 +27,7 @@ public:
 
     bool next(VotedAttitude& output) { return ready_.pop(output); }
 
-    /// This voter was away: another one may own `voted` now.
+    /// This voter was away: another one may own `voted` now. What next() has not handed out is older than what that one has written.
     void start_over(std::int64_t now_ns);
 
     /// The right to write is there, although the first frame to be written may still be to come.
@@ -41,7 +42,7 @@ public:
 private:
     enum class Right {
         proving,  ///< Too few good frames so far, or a stronger voter may be undiscovered. Ends when both are settled.
-        holding,  ///< A weaker voter has published these frames already; ends with the first frame that it has not.
+        holding,  ///< A weaker voter has published these frames already, or may have; ends with the first frame that it cannot have.
         writing,  ///< Every later frame is written. Ends when this voter was away.
     };
 
@@ -52,8 +53,8 @@ private:
     };
 
     void consider_right(const OtherVoters& others, std::int64_t now_ns);
-    bool must_hold(Identity identity, const OtherVoters& others) const;
-    bool may_write(const Waiting& waiting, const OtherVoters& others);
+    bool must_hold(Identity identity, const OtherVoters& others, std::int64_t now_ns) const;
+    bool may_write(const Waiting& waiting, const OtherVoters& others, std::int64_t now_ns);
 
     std::int64_t interval_ns_;                ///< A follower waits so long for the leader's output of a frame.
     std::int64_t lease_ns_;                   ///< The right returns so long after an absence at the earliest.
@@ -66,6 +67,7 @@ private:
     unsigned listened_ = 0;                   ///< Own frames since the start.
     unsigned held_ = 0;                       ///< Frames passed over while holding.
     std::int64_t not_before_ns_;              ///< The right does not return before.
+    Punctuality punctuality_;                 ///< How late a frame is here. Begins anew with an absence.
     Position written_;                        ///< Nothing at or before this is written any more.
 };
 

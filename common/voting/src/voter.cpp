@@ -67,8 +67,9 @@ void Voter::poll(std::int64_t now_ns)
     go_on();
 }
 
-bool Voter::next_owned(VotedAttitude& output)
+bool Voter::next_owned(VotedAttitude& output, std::int64_t now_ns)
 {
+    notice(now_ns);
     return owned_->next(output);
 }
 

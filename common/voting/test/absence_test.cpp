@@ -16,6 +16,21 @@ constexpr std::uint64_t lost_from = 100;  ///< the first frame that arrives whil
 constexpr std::uint64_t end = 400;
 constexpr std::uint64_t queue = 64;  ///< samples that a reader of the lanes' attitudes keeps
 
+/// What another voter publishes.
+VotedAttitude output_of(std::uint32_t voter, std::uint64_t sequence)
+{
+    VotedAttitude output;
+    output.epoch = first_epoch;
+    output.sequence = sequence;
+    output.output_sequence = sequence + 1;
+    output.attitude = truth(sequence);
+    output.unit = 7;
+    output.voter = voter;
+    output.primary_lane = 1;
+    output.vouching_mask = 7;
+    return output;
+}
+
 /// The weaker of two voters; the stronger one is its script.
 struct Weaker {
     explicit Weaker(std::int64_t frame_interval) : interval_ns(frame_interval), scene(settings(frame_interval)) {}
@@ -36,16 +51,7 @@ struct Weaker {
 
     void stronger_publishes(std::uint64_t sequence, std::int64_t time)
     {
-        VotedAttitude output;
-        output.epoch = first_epoch;
-        output.sequence = sequence;
-        output.output_sequence = sequence + 1;
-        output.attitude = truth(sequence);
-        output.unit = 7;
-        output.voter = 1;
-        output.primary_lane = 1;
-        output.vouching_mask = 7;
-        scene.at(time, output);
+        scene.at(time, output_of(1, sequence));
     }
 
     /// @param away       frames that arrive while this voter does not run
@@ -112,5 +118,76 @@ TEST_P(Absence, leaves_voted_going_forward)
 }
 
 INSTANTIATE_TEST_SUITE_P(At, Absence, testing::Values(5 * ms, ms), [](const auto& interval) { return interval.param == ms ? "1_kHz" : "200_Hz"; });
+
+/// The stronger of two voters returns after two seconds in which the weaker one took over. When it begins to write, the weaker one may just
+/// have ceased to wait for it, and have written the same frame.
+struct Stronger {
+    static constexpr std::uint64_t back_from = lost_from + 400;
+
+    /// @param late_from   from this frame on the lanes' samples of six frames come late, in time for the next frame
+    /// @param weaker_lives  it goes on after this one's return
+    /// @returns the first frame that this voter writes after its return
+    std::uint64_t first_written(std::uint64_t late_from, bool weaker_lives)
+    {
+        for (std::uint64_t sequence = 0; sequence < lost_from; ++sequence) frame(sequence, 0, true);
+        scene.stopped_until(Scene::time_of(back_from) - ms);
+        for (std::uint64_t sequence = back_from; sequence < back_from + 100; ++sequence) {
+            const bool late = sequence >= late_from && sequence < late_from + 6;
+            frame(sequence, late ? 4 * ms : 0, weaker_lives);
+        }
+        const auto first = std::ranges::find_if(scene.owned, [](const VotedAttitude& output) { return output.sequence >= lost_from; });
+        return first == scene.owned.end() ? 0 : first->sequence;
+    }
+
+    void frame(std::uint64_t sequence, std::int64_t late_ns, bool weaker_publishes)
+    {
+        const std::int64_t time = Scene::time_of(sequence) + late_ns;
+        for (std::size_t lane = 0; lane < 3; ++lane) scene.at(time, sample_of(lane, sequence));
+        if (!weaker_publishes) return;
+        scene.at(time + ms / 2, output_of(2, sequence));
+    }
+
+    Scene scene{settings_of(3, {1, 2}, 1)};
+};
+
+TEST(ReturnOfTheStronger, begins_with_no_frame_that_the_weaker_may_have_ceased_to_wait_for)
+{
+    const std::uint64_t punctual = Stronger().first_written(0, true);
+    ASSERT_GT(punctual, Stronger::back_from);
+    EXPECT_EQ(Stronger().first_written(punctual - 1, true), punctual + 5) << "the first punctual frame";
+    EXPECT_EQ(Stronger().first_written(punctual + 1, true), punctual) << "once it writes, a late frame is written all the same";
+}
+
+TEST(ReturnOfTheStronger, waits_for_no_weaker_voter_that_is_dead)
+{
+    const std::uint64_t punctual = Stronger().first_written(0, false);
+    ASSERT_GT(punctual, Stronger::back_from);
+    EXPECT_EQ(Stronger().first_written(punctual - 1, false), punctual);
+}
+
+/// The stronger of two voters is stopped between its decision about a frame and the write, as a signal may stop a process anywhere.
+/// @returns whether that frame is written when it goes on
+bool is_written_after(std::int64_t pause_ns)
+{
+    Scene scene(settings_of(3, {1, 2}, 1));
+    scene.frames(0, lost_from - 1);
+    for (std::size_t lane = 0; lane < 3; ++lane) scene.voter.on_attitude(sample_of(lane, lost_from), Scene::time_of(lost_from));
+    scene.now = Scene::time_of(lost_from) + pause_ns;
+    scene.collect();
+    EXPECT_TRUE(std::ranges::any_of(scene.outputs, [](const VotedAttitude& output) { return output.sequence == lost_from; }));
+    return scene.owned.back().sequence == lost_from;
+}
+
+TEST(StopBeforeAWrite, leaves_the_frame_to_the_voter_that_took_over)
+{
+    EXPECT_FALSE(is_written_after(2000 * ms));
+    EXPECT_FALSE(is_written_after(60 * ms));
+}
+
+TEST(StopBeforeAWrite, too_short_for_another_voter_to_take_over_keeps_no_frame_back)
+{
+    EXPECT_TRUE(is_written_after(0));
+    EXPECT_TRUE(is_written_after(20 * ms));
+}
 
 }  // namespace

@@ -149,6 +149,8 @@ private:
         std::unique_ptr<Voter> voter;
         std::int64_t started = 0;
         std::int64_t stopped_until = 0;
+        unsigned messages_until_stop = 0;  ///< It stops when it has decided about so many, before it writes; 0 = it does not.
+        std::int64_t stop_ns = 0;          ///< For so long.
         std::vector<std::pair<std::int64_t, std::variant<AttitudeState, FaultVerdict, VotedAttitude>>> queue;
         StatesSeen states;
     };
@@ -168,7 +170,9 @@ private:
         settings.return_frames = profile_.return_frames;
         settings.voter = static_cast<std::uint32_t>(index) + 1;
         for (std::uint32_t voter = 1; profile_.voters > 1 && voter <= profile_.voters; ++voter) settings.voters.push_back(voter);
-        voters_[index] = {std::make_unique<Voter>(settings), now_, 0, {}, {}};
+        voters_[index] = {};
+        voters_[index].voter = std::make_unique<Voter>(settings);
+        voters_[index].started = now_;
         voters_[index].voter->poll(now_);
     }
 
@@ -193,7 +197,13 @@ private:
             if (other != index && !is_in_service(other)) return;
         }
         if (voters_[index].voter == nullptr) return;
-        voters_[index].stopped_until = now_ + ms * static_cast<std::int64_t>(random() % 200);
+        const auto stop_ns = ms * static_cast<std::int64_t>(random() % 200);
+        if (voters_.size() > 1 && random() % 2 == 0) {
+            voters_[index].messages_until_stop = 1 + static_cast<unsigned>(random() % 8);
+            voters_[index].stop_ns = stop_ns;
+            return;
+        }
+        voters_[index].stopped_until = now_ + stop_ns;
         if (voters_.size() == 1) now_ = std::max(now_, voters_[index].stopped_until);
     }
 
@@ -279,6 +289,7 @@ private:
         }
         if (process.stopped_until > process.started) {
             process.started = process.stopped_until;
+            collect(index);
             auto waiting = std::move(process.queue);
             process.queue.clear();
             // Other voters, verdicts, attitudes: the alternatives from the last to the first.
@@ -315,6 +326,11 @@ private:
 
     void collect(std::size_t index)
     {
+        Process& process = voters_[index];
+        if (process.messages_until_stop > 0 && --process.messages_until_stop == 0) {
+            process.stopped_until = now_ + process.stop_ns;
+            return;
+        }
         const char* broken = voters_[index].voter->broken_invariant();
         watches_[index].expect(broken == nullptr, broken);
         watches_[index].expect(voters_[index].states.see(voters_[index].voter->state()), "a change of state that is not drawn");
@@ -322,7 +338,7 @@ private:
         VoterEvent event;
         VotedAttitude owned;
         while (voters_[index].voter->next_event(event)) continue;
-        while (voters_[index].voter->next_owned(owned)) on_owned(index, owned);
+        while (voters_[index].voter->next_owned(owned, now_)) on_owned(index, owned);
         while (voters_[index].voter->next_output(output)) {
             const auto published = published_.find(identity_of(output));
             watches_[index].see(output, published == published_.end() ? nullptr : &published->second);

@@ -207,7 +207,7 @@ public:
         if (const char* broken = voter.broken_invariant()) ADD_FAILURE() << broken << ", at " << now << " ns";
         EXPECT_TRUE(states.see(voter.state())) << "a change to " << to_string(voter.state()) << " that is not drawn";
         VotedAttitude written;
-        while (voter.next_owned(written)) owned.push_back(written);
+        while (voter.next_owned(written, now)) owned.push_back(written);
         VotedAttitude output;
         while (voter.next_output(output)) {
             outputs.push_back(output);

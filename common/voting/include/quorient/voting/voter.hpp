@@ -87,7 +87,8 @@ public:
     std::int64_t next_deadline_ns() const { return promised_ns_; }
 
     /// What is to be written to `voted`, before anything is published on `voter_output`: a voter that follows this one writes after it.
-    bool next_owned(VotedAttitude& output);
+    /// @param now_ns  the time just before the write: this voter may have been away since it decided, and another one may own `voted`
+    bool next_owned(VotedAttitude& output, std::int64_t now_ns);
 
     /// What is to be published on `voter_output`. @returns whether there was one; the oldest first.
     bool next_output(VotedAttitude& output);
