@@ -143,9 +143,19 @@ bool OtherVoters::are_ahead_of(Identity identity, std::int64_t now_ns) const
 
 Identity OtherVoters::weaker_reached() const
 {
+    return reached_by(false);
+}
+
+Identity OtherVoters::stronger_reached() const
+{
+    return reached_by(true);
+}
+
+Identity OtherVoters::reached_by(bool stronger) const
+{
     Identity reached;
     for (const OtherVoter& other : others_) {
-        if (!other.stronger() && other.seen()) reached = std::max(reached, other.position().identity);
+        if (other.stronger() == stronger && other.seen()) reached = std::max(reached, other.position().identity);
     }
     return reached;
 }

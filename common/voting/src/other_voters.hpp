@@ -93,6 +93,9 @@ public:
     /// The farthest frame of all weaker voters, fresh or not.
     Identity weaker_reached() const;
 
+    /// The same of all stronger voters.
+    Identity stronger_reached() const;
+
     /// A weaker voter is fresh.
     bool weaker_fresh(std::int64_t now_ns) const;
 
@@ -107,6 +110,8 @@ public:
     const char* broken_invariant() const;
 
 private:
+    Identity reached_by(bool stronger) const;
+
     std::uint32_t unit_;              ///< The unit whose outputs are accepted.
     Durations durations_;             ///< They say for how long a voter is fresh.
     std::vector<OtherVoter> others_;  ///< All other voters, strongest first.

@@ -15,6 +15,7 @@ OwnedStream::OwnedStream(const VoterSettings& settings, const Durations& duratio
     : interval_ns_(durations.interval_ns),
       lease_ns_(durations.lease_ns),
       good_frames_required_(settings.good_frames_before_owning),
+      lag_frames_(static_cast<std::uint64_t>(durations.lease_ns / 2 / durations.interval_ns)),
       listen_frames_(static_cast<unsigned>(settings.listen_s / settings.interval_s)),
       not_before_ns_(std::numeric_limits<std::int64_t>::min()),
       punctuality_(durations.interval_ns)
@@ -46,7 +47,6 @@ void OwnedStream::start_over(std::int64_t now_ns)
     good_frames_ = held_ = 0;
     not_before_ns_ = now_ns + lease_ns_;
     ready_.clear();
-    punctuality_ = Punctuality(interval_ns_);
 }
 
 std::int64_t OwnedStream::deadline_ns() const
@@ -74,10 +74,21 @@ bool OwnedStream::may_write(const Waiting& waiting, const OtherVoters& others, s
         written_ = std::max(written_, others.reached());
         return false;
     }
+    if (is_behind(position.identity, others)) return false;
     const bool forward =
         waiting.repeated ? position > written_ && position.identity >= others.reached().identity : position.identity > written_.identity;
     if (forward) written_ = position;
     return forward;
+}
+
+/// A stronger voter has written this frame long ago. Should that one have ended since, readers would see a step back.
+bool OwnedStream::is_behind(Identity identity, const OtherVoters& others)
+{
+    const Identity theirs = others.stronger_reached();
+    const bool far = identity.epoch == theirs.epoch && identity.sequence + lag_frames_ < theirs.sequence;
+    const bool catches_up = behind_ || far;
+    behind_ = catches_up && identity < theirs;
+    return catches_up && identity <= theirs;
 }
 
 /// A weaker voter has published this frame: the first frame of a new owner would be a step back for readers. A weaker voter that is merely

@@ -15,6 +15,7 @@ namespace quorient::voting {
 ///    `listen_s` to discover each other. An absence ends the right, and it returns after one lease at the earliest.
 /// 2. It begins with a frame that no voter has published yet, and early enough that no weaker one can have ceased to wait for it.
 /// 3. A frame is written in the order of strength: after the leader has published it, or an interval late where the leader does not.
+///    One that falls behind the leader by half a lease passes frames over until it has caught up.
 class OwnedStream {
 public:
     OwnedStream(const VoterSettings& settings, const Durations& durations);
@@ -53,12 +54,14 @@ private:
     };
 
     void consider_right(const OtherVoters& others, std::int64_t now_ns);
+    bool is_behind(Identity identity, const OtherVoters& others);
     bool must_hold(Identity identity, const OtherVoters& others, std::int64_t now_ns) const;
     bool may_write(const Waiting& waiting, const OtherVoters& others, std::int64_t now_ns);
 
     std::int64_t interval_ns_;                ///< A follower waits so long for the leader's output of a frame.
     std::int64_t lease_ns_;                   ///< The right returns so long after an absence at the earliest.
     unsigned good_frames_required_;           ///< Good frames until the right to write.
+    std::uint64_t lag_frames_;                ///< One that is farther behind a stronger voter passes frames over.
     unsigned listen_frames_;                  ///< Good frames after which an unseen stronger voter is taken to be absent.
     BoundedQueue<Waiting, longest_burst> waiting_;      ///< Outputs in order that are neither written nor passed over yet.
     BoundedQueue<VotedAttitude, longest_burst> ready_;  ///< Outputs in order that next() hands out.
@@ -66,8 +69,9 @@ private:
     unsigned good_frames_ = 0;                ///< Own frames since the start or the last absence.
     unsigned listened_ = 0;                   ///< Own frames since the start.
     unsigned held_ = 0;                       ///< Frames passed over while holding.
+    bool behind_ = false;                     ///< Frames are passed over until a stronger voter is reached.
     std::int64_t not_before_ns_;              ///< The right does not return before.
-    Punctuality punctuality_;                 ///< How late a frame is here. Begins anew with an absence.
+    Punctuality punctuality_;                 ///< How late a frame is here.
     Position written_;                        ///< Nothing at or before this is written any more.
 };
 

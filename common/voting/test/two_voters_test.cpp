@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <memory>
+#include <vector>
 
 using namespace quorient;
 using namespace quorient::voting;
@@ -68,6 +69,37 @@ TEST(TwoVoters, write_no_frame_both_while_they_have_not_found_each_other)
     EXPECT_TRUE(pair.weak.voter.may_own());
     ASSERT_FALSE(pair.weak.owned.empty()) << "it stands by, for readers that lose the stronger one";
     EXPECT_EQ(pair.weak.owned.back().sequence, 299U);
+}
+
+/// The lanes' samples reach the weaker voter so many frames late, the stronger voter's outputs in time, until that one dies.
+/// @returns what the weaker one writes to `voted` when readers listen to it: a lease after the other's death
+std::vector<std::uint64_t> written_by_the_weaker(std::uint64_t lag)
+{
+    constexpr std::uint64_t death = 300;
+    Scene weak(settings_of(3, {1, 2}, 2));
+    std::size_t before = 0;
+    for (std::uint64_t sequence = 0; sequence < 400; ++sequence) {
+        const std::int64_t time = Scene::time_of(sequence);
+        if (sequence < death) weak.at(time, output_by(1, sequence, sequence + 1));
+        const std::uint64_t late = sequence < 150 ? 0 : lag;
+        if (sequence == death + 10) before = weak.owned.size();
+        for (std::size_t lane = 0; lane < 3; ++lane) weak.at(time + ms, sample_of(lane, sequence - late));
+    }
+    std::vector<std::uint64_t> written;
+    for (std::size_t i = before; i < weak.owned.size(); ++i) written.push_back(weak.owned[i].sequence);
+    return written;
+}
+
+TEST(TwoVoters, the_weaker_one_that_is_behind_writes_nothing_that_is_older_than_what_the_dead_one_wrote)
+{
+    const auto punctual = written_by_the_weaker(2);
+    ASSERT_FALSE(punctual.empty());
+    EXPECT_EQ(punctual.front(), 308U);
+    EXPECT_EQ(punctual.back(), 397U);
+    const auto behind = written_by_the_weaker(15);
+    ASSERT_FALSE(behind.empty());
+    EXPECT_EQ(behind.front(), 300U) << "the first frame that the stronger one did not publish";
+    EXPECT_EQ(behind.back(), 384U);
 }
 
 TEST(TwoVoters, that_never_hear_the_stronger_one_own_after_two_seconds)
