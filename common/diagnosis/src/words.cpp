@@ -37,9 +37,9 @@ constexpr double at_once_s = 1.5;  // a fault from the first second on
 /// "0.47 +- 0.01"
 std::string sized(double size, double uncertainty, int digits)
 {
-    if (!std::isfinite(uncertainty) || uncertainty <= 0) return fmt::format("{:.{}f}", size, digits);
+    if (!std::isfinite(uncertainty) || uncertainty <= 0) return fixed(size, digits);
     const double least = std::pow(10.0, -digits);  // what is more certain than the digits show is not called exact
-    return fmt::format("{:.{}f} +- {:.{}f}", size, digits, std::max(uncertainty, least), digits);
+    return fixed(size, digits) + " +- " + fixed(std::max(uncertainty, least), digits);
 }
 
 /// "10.7 +- 0.1 deg/s too little"
@@ -184,6 +184,11 @@ bool Report::judged() const
 bool Report::found_anything() const
 {
     return std::any_of(findings.begin(), findings.end(), [](const Finding& f) { return f.certainty != Certainty::transient; });
+}
+
+std::string fixed(double value, int digits)
+{
+    return fmt::format("{:.{}f}", std::abs(value) < std::pow(10.0, -digits) / 2 ? 0.0 : value, digits);
 }
 
 std::string counted(std::uint64_t count, std::string_view thing)

@@ -19,11 +19,12 @@ using diagnosis::Report;
 constexpr std::string_view style =
     "body{font-family:sans-serif;max-width:60em;margin:1em auto;padding:0 .8em;color:#111;background:#fff;line-height:1.35}"
     "h1{font-size:1.25em;padding:.5em .7em;border-left:.5em solid #009e73;background:#f3f3f3}h1.isolated{border-color:#d00000}"
-    "h1.detected{border-color:#e69f00}h1.open{border-color:#888}h2{font-size:1.05em;margin:1.4em 0 .3em}svg{width:100%;height:auto;display:block;font-size:11px;"
-    "font-family:sans-serif;break-inside:avoid}svg .g{stroke:#ddd;fill:none}svg .t{font-weight:bold}svg .l{fill:none;stroke-width:1.2}"
-    "svg .b{fill-opacity:.45;stroke-width:.6}svg .o{paint-order:stroke;stroke:#fff;stroke-width:3px}.keys span{white-space:nowrap;margin-right:1em}"
-    ".keys i{display:inline-block;width:1.2em;height:.6em;margin-right:.3em}ul{padding-left:1.2em;margin:.3em 0}.wide{overflow-x:auto}"
-    "pre{font-size:.8em;white-space:pre-wrap;overflow-wrap:anywhere}@media print{body{margin:0;max-width:none}h1{background:none}}";
+    "h1.detected{border-color:#e69f00}h1.open{border-color:#888}h2{font-size:1.05em;margin:1.4em 0 .3em}.keys span{display:inline-block;max-width:100%;margin-right:1em;overflow-wrap:anywhere}"
+    ".keys i{display:inline-block;width:1.2em;height:.6em;margin-right:.3em}ul{padding-left:1.2em;margin:.3em 0}"
+    "pre{font-size:12px;white-space:pre-wrap;overflow-wrap:anywhere}figure .l{mix-blend-mode:multiply}@media print{body{margin:0;max-width:none}h1{background:none}}";
+
+constexpr BandLook rates_look{Spacing::linear, 150};
+constexpr int most_ticks = 5;  // their labels have room on a phone
 
 /// The compared instruments, by their places in the report.
 std::vector<std::size_t> compared_of(const Report& report)
@@ -38,14 +39,14 @@ class Page {
 public:
     explicit Page(const Report& report)
         : report_(report), compared_(compared_of(report)),
-          span_{report.plot.first_s, report.plot.first_s + std::max(1e-3, report.plot.bin_s * static_cast<double>(report.plot.bins.size()))}
+          span_{report.plot.first_s, report.plot.first_s + std::max(1e-3, report.plot.bin_s * static_cast<double>(report.plot.bins.size())), 46, most_ticks}
     {
     }
 
     std::string text() const
     {
         std::string page = "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><meta name='viewport' content='width=device-width, initial-scale=1'>\n";
-        page += fmt::format("<title>{}</title>\n<style>{}</style></head><body>\n", markup_escaped(report_.log), style);
+        page += fmt::format("<title>{}</title>\n<style>{}{}</style></head><body>\n", markup_escaped(report_.log), style, figure_style);
         const std::string_view state = !report_.findings.empty() ? name_of(report_.findings.front().certainty) : report_.judged() ? "" : "open";
         page += fmt::format("<h1 class='{}'>{}</h1>\n<p>{}: {:.1f} s</p>\n", state, markup_escaped(report_.sentence), markup_escaped(report_.log), report_.logged_s());
         page += findings();
@@ -70,15 +71,18 @@ private:
         for (std::size_t m = 0; m < compared_.size(); ++m)
             text += fmt::format("<span><i style='background:{}'></i>{}</span>", colour(m), markup_escaped(report_.instruments[compared_[m]].name));
         text += "</p>\n";
-        if (!report_.findings.empty()) text += svg_element(bar_strip("Findings", span_, bars()));
-        for (int axis = 0; axis < 3; ++axis) text += svg_element(band_strip(fmt::format("Rate about {}, all gyros", "xyz"[axis]), "deg/s", span_, rates(axis)));
-        for (std::size_t m = 0; m < compared_.size() && was_watched(); ++m)
-            text += svg_element(band_strip(fmt::format("{}: deviation from the others, and what it stays below while sound (dashed)", report_.instruments[compared_[m]].name),
-                                           "deg/s", span_, residuals(m)));
-        if (report_.attitude)
-            text += svg_element(band_strip(fmt::format("Attitude with {0} among the others; by {0} alone (dashed)",
-                                                       report_.instruments[report_.attitude->left_out].name),
-                                           "deg", span_, attitudes()));
+        if (!report_.findings.empty()) text += figure_element(bar_strip("Findings", span_, bars()));
+        for (int axis = 0; axis < 3; ++axis) text += figure_element(band_strip(fmt::format("Rate about {}, all gyros", "xyz"[axis]), "deg/s", span_, rates(axis), rates_look));
+        for (std::size_t m = 0; m < compared_.size() && was_watched(); ++m) {
+            const std::string& name = report_.instruments[compared_[m]].name;
+            text += figure_element(
+                band_strip(fmt::format("{}: deviation from the others, and what it stays below while sound (dashed)", name), "deg/s", span_, residuals(m)));
+        }
+        if (report_.attitude) {
+            const std::string& name = report_.instruments[report_.attitude->left_out].name;
+            text += figure_element(
+                band_strip(fmt::format("Attitude with {0} among the others; by {0} alone (dashed)", name), "deg", span_, attitudes()));
+        }
         return text;
     }
 
@@ -91,15 +95,20 @@ private:
         return std::any_of(report_.plot.bins.begin(), report_.plot.bins.end(), has_bound);
     }
 
+    static std::string_view short_words(const diagnosis::Finding& finding)
+    {
+        if (finding.kind != diagnosis::Kind::bias || std::isfinite(finding.size)) return name_of(finding.kind);
+        return finding.instrument ? "contradicts the others" : "disagree";
+    }
+
     std::vector<Bar> bars() const
     {
         std::vector<Bar> found;
         for (const auto& finding : report_.findings) {
             const bool certain = finding.certainty == Certainty::isolated;
             const bool detected = finding.certainty == Certainty::detected;
-            const bool disagreement = !finding.instrument && finding.kind == diagnosis::Kind::bias;
-            found.push_back({fmt::format("{} {}", place_of(finding, report_), disagreement ? "disagree" : name_of(finding.kind)), certain ? "#d00000" : detected ? "#e69f00" : "#bbbbbb",
-                             finding.from_s, finding.to_s.value_or(span_.to_s)});
+            const std::string_view colour = certain ? "#d00000" : detected ? "#e69f00" : "#999999";
+            found.push_back({fmt::format("{} {}", place_of(finding, report_), short_words(finding)), std::string(colour), finding.from_s, finding.to_s.value_or(span_.to_s)});
         }
         return found;
     }

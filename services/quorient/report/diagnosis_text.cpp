@@ -23,7 +23,7 @@ std::string three(const std::optional<Eigen::Vector3d>& values, int digits)
     std::string text;
     for (const double value : *values) {
         text += text.empty() ? "" : " ";
-        text += std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
+        text += std::isfinite(value) ? diagnosis::fixed(value, digits) : "-";
     }
     return text;
 }

@@ -3,6 +3,7 @@
 #include "cli/svg_scale.hpp"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace quorient::cli {
@@ -21,7 +22,7 @@ struct Band {
     std::string name = {};     ///< in the legend; empty = not there
 };
 
-/// A bar over a time, in a row of its own, with its label beside it.
+/// A bar over a time, with its label in a line above it.
 struct Bar {
     std::string label;
     std::string colour;
@@ -45,12 +46,16 @@ struct BarRow {
 struct TimeSpan {
     double from_s = 0;
     double to_s = 1;
-    double left = 46;  ///< room for labels, in units of the drawing
+    double left = 46;  ///< room for labels, px
+    int most_ticks = 7;
 };
 
-/// A diagram over time, `height` units of the drawing high.
+/// A diagram over time. Places across it are shares of its width, so that letters and heights keep their size [px] at any width.
 struct Strip {
-    double height = 0;
+    std::string title;
+    std::string unit;  ///< of the values; empty = none
+    double left = 0;
+    double height = 0;  ///< of the body
     std::string body;
 };
 
@@ -64,8 +69,9 @@ Strip band_strip(const std::string& title, const std::string& unit, const TimeSp
 Strip bar_strip(const std::string& title, const TimeSpan& span, const std::vector<Bar>& bars);
 Strip row_strip(const std::string& title, const TimeSpan& span, const std::vector<BarRow>& rows);
 
-/// For a page of HTML, as wide as the page, which brings the style.
-std::string svg_element(const Strip& strip);
+/// For a page of HTML, as wide as the page, with the title as a text of the page. `figure_style` belongs into the page's style.
+std::string figure_element(const Strip& strip);
+extern const std::string_view figure_style;
 
 /// All of them, one below the other, as an SVG file that needs nothing else.
 std::string svg_file(const std::string& title, const std::vector<Strip>& strips);

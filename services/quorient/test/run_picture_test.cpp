@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <cmath>
 #include <numbers>
+#include <regex>
 
 namespace quorient::report {
 namespace {
@@ -127,6 +128,24 @@ TEST_F(RunPicture, names_what_was_left_out_by_the_users_names)
     EXPECT_THAT(picture(), Not(HasSubstr("G1")));
     EXPECT_THAT(picture(), HasSubstr("four &lt;gyros&gt;"));
     EXPECT_EQ(timeline_->moments().back().lane[0].residual[1].largest, 10);
+}
+
+TEST_F(RunPicture, has_as_many_rows_of_a_legend_as_its_names_need)
+{
+    const auto place = [this](const std::string& name) {
+        std::smatch found;
+        const std::string text = picture();
+        EXPECT_TRUE(std::regex_search(text, found, std::regex("<text x='([0-9.]+)' y='([0-9.]+)'>" + name)));
+        return std::pair{std::stod(found[1]), std::stod(found[2])};
+    };
+    auto made = verdict(0, 100);
+    made.isolated_mask = 0b1111;
+    timeline_->on_verdict(made);
+    timeline_->on_verdict(verdict(1, 1));
+
+    const auto first = place("threshold");
+    EXPECT_EQ(place("residual of G2").second, first.second);
+    EXPECT_EQ(place("residual of G3"), (std::pair{first.first, first.second + 13}));
 }
 
 TEST_F(RunPicture, of_a_quiet_run_says_that_nothing_was_left_out)

@@ -24,6 +24,9 @@ std::string statement_of(const Finding& finding, const Report& report);
 /// "90 degrees about z": the turn, in words. @param turn  a rotation
 std::string words_of_turn(const Eigen::Matrix3d& turn);
 
+/// With so many digits behind the point; what shows as 0 has no sign.
+std::string fixed(double value, int digits);
+
 /// "1 gap", "2 gaps".
 std::string counted(std::uint64_t count, std::string_view thing);
 
