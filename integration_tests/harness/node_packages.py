@@ -48,3 +48,16 @@ def why_missing():
     if not missing():
         return None
     return f"npm gave no {', '.join(missing())}: {(ended.stderr.strip() or 'no reason given').splitlines()[0]}"
+
+
+def run_script(script, folder, *arguments, timeout=120):
+    """Runs a script of Node and its neighbours in `folder`, where the packages are found. @returns what it printed."""
+    modules = folder / "node_modules"
+    if not modules.exists():
+        modules.symlink_to(node_modules())
+    for file in script.parent.glob("*.mjs"):
+        shutil.copy(file, folder)
+    ended = subprocess.run(["node", folder / script.name, *map(str, arguments)], capture_output=True, text=True, timeout=timeout)
+    if ended.returncode != 0:
+        raise AssertionError(ended.stderr)
+    return ended.stdout

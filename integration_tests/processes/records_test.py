@@ -2,12 +2,11 @@
 import csv
 import json
 import pathlib
-import shutil
 import subprocess
 import time
 import unittest
 
-from integration_tests.harness.node_packages import node_modules
+from integration_tests.harness.node_packages import node_modules, run_script
 from integration_tests.harness.processes import CONFIGURATIONS, ProcessTest
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[1] / "records"
@@ -35,14 +34,7 @@ class RecordTest(ProcessTest):
         return output
 
     def node(self, script, *arguments):
-        modules = self.path("node_modules")
-        if not modules.exists():
-            modules.symlink_to(node_modules())
-        for file in SCRIPTS.glob("*.mjs"):
-            shutil.copy(file, self.run_directory)
-        ended = subprocess.run(["node", self.path(script), *map(str, arguments)], capture_output=True, text=True, timeout=120)
-        self.assertEqual(ended.returncode, 0, ended.stderr)
-        return ended.stdout
+        return run_script(SCRIPTS / script, self.run_directory, *arguments)
 
     def check(self, name):
         """What Foxglove's libraries read of a file: a summary, and the frames as rows of numbers."""

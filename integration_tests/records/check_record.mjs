@@ -62,13 +62,14 @@ for (const record of records) {
   if (record.type === 'Channel' && !channels.has(record.id)) {
     const schema = schemas.get(record.schemaId);
     channels.set(record.id, {topic: record.topic, codec: codecOf(record, schema), hash: createHash('sha256'), last: -1});
-    topics[record.topic] = {schema: schema.name, messages: 0, differ: 0, outOfSequence: 0};
+    topics[record.topic] = {schema: schema.name, messages: 0, bytes: 0, differ: 0, outOfSequence: 0};
   }
   if (record.type !== 'Message') continue;
   const channel = channels.get(record.channelId);
   const topic = topics[channel.topic];
   const message = channel.codec.decode(record.data);
   ++topic.messages;
+  topic.bytes += record.data.length;
   lastLogTime = record.logTime;
   channel.hash.update(record.data);
   if (record.sequence !== channel.last + 1) ++topic.outOfSequence;

@@ -1,4 +1,6 @@
-"""Size and cost of a recording at 200 Hz, and what kill -9 leaves of one: `python3 -m integration_tests.records.measure [SECONDS]`. Prints a table.
+"""Size and cost of a recording at 200 Hz, what both readers find in it, and what kill -9 leaves of one. Prints a table.
+
+    python3 -m integration_tests.records.measure [SECONDS]
 
 The loss by a kill is the time from the last sample in the file to the signal, for kills at several phases of a chunk.
 """
@@ -12,8 +14,10 @@ import sys
 import tempfile
 import time
 
+from integration_tests.harness.node_packages import run_script
 from integration_tests.harness.processes import BIN, CONFIGURATIONS
 
+CHECK = pathlib.Path(__file__).with_name("check_record.mjs")
 DEMO = CONFIGURATIONS / "demo.yaml"
 DOMAIN = 61
 CHUNK = 0x06  # opcode of a chunk
@@ -60,6 +64,15 @@ def replay(file):
     return json.loads(subprocess.run(command("replay", file, "--system", DEMO, "--set", "expect=null", "--json"), capture_output=True, text=True, check=True).stdout)
 
 
+def read_by_others(folder, file):
+    """By Foxglove's libraries: the messages of each topic, the bytes of all, and how many messages differ when these libraries encode them again."""
+    found = json.loads(run_script(CHECK, folder, file, folder / "frames.csv", timeout=1800))
+    counts = {topic: facts["messages"] for topic, facts in found["topics"].items() if facts["messages"]}
+    if not found["ended"] or found["indexed"] != counts:
+        raise AssertionError(f"forwards {counts}, by the index {found['indexed']}")
+    return counts, sum(facts["bytes"] for facts in found["topics"].values()), sum(facts["differ"] for facts in found["topics"].values())
+
+
 def kill(folder, number, after_s):
     """@returns the frames that replay reads, and how long before the kill the last sample was received [s]."""
     file = folder / f"killed_{number}.mcap"
@@ -84,17 +97,21 @@ def main():
         try:
             time.sleep(2)  # the pipeline starts; what is measured does not depend on it
             size, costs, told = record(folder)
-            replayed = replay(folder / "flight.mcap")
             frames = int(re.match(r"(\d+) frames", told[0]).group(1))
             kills = [kill(folder, number, after_s) for number, after_s in enumerate(KILLS_AFTER_S)]
         finally:
             launched.terminate()
             launched.wait(timeout=30)
+        replayed = replay(folder / "flight.mcap")
+        counts, content, differ = read_by_others(folder, folder / "flight.mcap")
     seconds = frames / 200
     print("| what | |\n|---|---|")
-    print(f"| told by `record` | {told[0]} |")
-    print(f"| told by `record` of a CSV beside it | {told[1]} |")
-    print(f"| size, and frames that replay reads | {size / 1e6:.1f} MB, {replayed['frames']} |")
+    print(f"| reported by `record` | {told[0]} |")
+    print(f"| reported by `record` of a CSV beside it | {told[1]} |")
+    print(f"| size | {size / 1e6:.1f} MB |")
+    print(f"| frames that `quorient replay` reads | {replayed['frames']} |")
+    print(f"| the same by `@mcap/core`, forwards and by the index | {counts['quorient/frame']} frames, {sum(counts.values())} messages in all |")
+    print(f"| of these {content / 1e6:.1f} MB, decoded and encoded again by Foxglove's libraries | {differ} messages have other bytes |")
     print(f"| size per minute | {size / seconds * 60 / 1e6:.1f} MB |")
     print(f"| write rate | {size / seconds / 1e3:.0f} kB/s |")
     print(f"| processor time of `record` | {100 * costs[0]:.1f} % of one processor; of a CSV {100 * costs[1]:.1f} % |")
