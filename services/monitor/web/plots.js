@@ -9,6 +9,9 @@ let onTouch = () => {};
 
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const laneColour = (place) => colour(`--lane${place % 4}`);
+const scientific = (value, digits) => (value === 0 ? "0" : value.toExponential(digits));
+const errorLabels = ["standard deviation of the attitude, rad", "its error against the truth, rad"];
+const leastSpanMs = 20_000; // of the plots, where the run is younger than the chosen time
 const flat = (value) => [value, value, value];
 
 /// A range as the charts take it: [smallest, middle, largest]. A logarithmic axis has no 0: three decades below the largest stand for it.
@@ -37,13 +40,16 @@ function errorRows(all) {
   });
 }
 
-function options(labels, colours, dashed, ylabel, legend) {
+function options(labels, colours, dashed, legend) {
   const series = {};
   for (const name of dashed) series[name] = { strokePattern: [6, 4], strokeWidth: 1 };
   return {
-    labels, colors: colours, series, ylabel, customBars: true, legend: "always", labelsDiv: page(legend),
+    labels, colors: colours, series, customBars: true, legend: "always", labelsDiv: page(legend),
     axisLineColor: colour("--faint"), gridLineColor: colour("--line"), rangeSelectorAlpha: 0.3, logscale: page("logarithmic").checked,
-    axes: { x: { axisLabelWidth: 70 }, y: { valueFormatter: (value) => value.toExponential(2), axisLabelFormatter: (value) => value.toExponential(0), axisLabelWidth: 62 } },
+    axes: {
+      x: { axisLabelWidth: 76, pixelsPerLabel: 96 },
+      y: { valueFormatter: (value) => scientific(value, 2), axisLabelFormatter: (value) => scientific(value, 0), axisLabelWidth: 56 },
+    },
     zoomCallback: () => onTouch(), animatedZooms: false,
   };
 }
@@ -54,9 +60,9 @@ function build(all, lanes, axis, state) {
   const labels = ["time", ...lanes.flatMap((name) => [`lane ${name}`, `bound ${name}`])];
   const colours = lanes.flatMap((_, place) => [laneColour(place), laneColour(place)]);
   const bounds = lanes.map((name) => `bound ${name}`);
-  residual = new Dygraph(page("plot"), residualRows(all, lanes, axis), { ...options(labels, colours, bounds, `${state.kind === "accelerometer" ? "m/s" : "rad"} per frame`, "plot-legend"), showRangeSelector: true });
-  error = new Dygraph(page("error-plot"), errorRows(all), options(["time", "standard deviation", "error"], [colour("--bound"), laneColour(1)], ["standard deviation"], "rad", "error-legend"));
-  page("plot-title").textContent = `Residual of ${state.axes[axis].name}`;
+  residual = new Dygraph(page("plot"), residualRows(all, lanes, axis), { ...options(labels, colours, bounds, "plot-legend"), showRangeSelector: true });
+  error = new Dygraph(page("error-plot"), errorRows(all), options(["time", ...errorLabels], [colour("--bound"), laneColour(1)], [errorLabels[0]], "error-legend"));
+  page("plot-title").textContent = `Residual of ${state.axes[axis].name}, ${state.kind === "accelerometer" ? "m/s" : "rad"} per frame`;
 }
 
 /// @param touched  called when somebody zooms, so that the plot does not run away from them.
@@ -76,7 +82,7 @@ export function drawPlots(samples, state, axis, anew = false) {
   if (wanted !== built) build(all, lanes, axis, state);
   built = wanted;
   const end = all.at(-1).t;
-  const dateWindow = [end - 1000 * Number(page("span").value), end];
+  const dateWindow = [Math.max(end - 1000 * Number(page("span").value), Math.min(all[0].t, end - leastSpanMs)), end];
   residual.updateOptions({ file: residualRows(all, lanes, axis), dateWindow });
   page("error-plot").hidden = !state.has_attitude;
   if (state.has_attitude) error.updateOptions({ file: errorRows(all), dateWindow });

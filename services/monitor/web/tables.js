@@ -44,7 +44,8 @@ export function showLanes(state) {
 
 export function showServices(state) {
   const microseconds = (value) => (value === null ? "–" : (value * 1e6).toFixed(0));
-  const rows = state.services.map((service) => {
+  const services = [...state.services].sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
+  const rows = services.map((service) => {
     const silent = service.age_s > 2 || service.state === "STOPPING";
     return [
       { text: service.name },
