@@ -61,7 +61,7 @@ def lanes_composed(file, case):
 def all_but_sensor_composed(file, case):
     commands = our_commands(file, case)
     names = [name for name in commands if name != "sensor"]
-    return {"all but the sensor": [BIN / "quorient-run", file, *names], "sensor": commands["sensor"]}
+    return {"the rest": [BIN / "quorient-run", file, *names], "sensor": commands["sensor"]}
 
 
 def floor_commands(case, domain, seconds):
