@@ -1,18 +1,21 @@
 """A running system of this machine's Debian release, of which processes move to the other release, in the root of `deploy/release-root`.
 
-`python3 -m integration_tests.releases.mixed_system kills`, `… upgrade`: a table of what was done, and what it cost."""
+`python3 -m integration_tests.releases.mixed_system kills`, `… upgrade`, `… sensor`: a table of what was done, and what it cost."""
 import argparse
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import time
+from typing import NamedTuple
 
-from integration_tests.harness.judge import errors_beyond, first_judged, judge, missing_frames
-from integration_tests.harness.pipeline import ALL_LANES, NotInTime, Pipeline, ask_for_priority
-from integration_tests.harness.processes import ROOT
+from integration_tests.harness.judge import FINAL_ERROR_RAD, errors_beyond, first_judged, judge, missing_frames
+from integration_tests.harness.pipeline import ALL_LANES, END_OF_GRACE_FRAMES, NotInTime, Pipeline, ask_for_priority
+from integration_tests.harness.processes import BIN, ROOT
+from integration_tests.harness.quaternion import angle, conjugate, product
 from integration_tests.harness.steady import Steady
-from integration_tests.harness.streams import SINGLE
+from integration_tests.harness.streams import HELD, SINGLE
 from integration_tests.kill_matrix.run_cell import LEASE_FRAMES
 
 OTHER = {"bookworm": "trixie", "trixie": "bookworm"}
@@ -20,6 +23,7 @@ RETURN_TIMEOUT_S = 40  # a command in the root begins some seconds later than on
 FAULTY_AXIS = 1
 VOTERS = (1, 2)  # wire ids
 LANES = "abc"
+STATED = [0.5, -0.5, 0.5, 0.5]  # the attitude that an operator states after a restart of the sensor
 
 
 def own_release():
@@ -43,14 +47,40 @@ def absence(scenario):
     return f"no {', '.join(absent)} of {other} in {programs}: deploy/release-root {other} deploy/demo builds them" if absent else None
 
 
+class Aligned(NamedTuple):
+    """An epoch whose attitude was stated: as of this frame it is STATED."""
+    epoch: int
+    frame: int
+
+    def broken(self, samples, truths):
+        """Yields a sentence for each promise that does not hold in this epoch."""
+        true = {truth.identity[1]: truth.attitude for truth in truths if truth.identity[0] == self.epoch}
+        voted = [sample for sample in samples if sample.identity[0] == self.epoch]
+        if any(sample.level not in HELD and sample.identity[1] < self.frame for sample in voted):
+            yield "an attitude was claimed before it was stated"
+        missing = missing_frames(voted, {(self.epoch, sequence): None for sequence in true}, (self.epoch, self.frame),
+                                 (self.epoch, max(true) - END_OF_GRACE_FRAMES))
+        if missing:
+            yield f"{len(missing)} voted frames missing after the attitude was stated"
+        turned = {sequence: product(conjugate(true[self.frame]), attitude) for sequence, attitude in true.items()}
+        errors = [angle(sample.attitude, product(STATED, turned[sample.identity[1]])) for sample in voted
+                  if sample.identity[1] >= self.frame and sample.identity[1] in turned and sample.level not in HELD]
+        if not errors:
+            yield "no attitude was voted after it was stated"
+        elif max(errors) > FINAL_ERROR_RAD:
+            yield f"{max(errors):.1e} rad off the stated attitude, {FINAL_ERROR_RAD:.0e} allowed"
+
+
 class MixedPipeline(Pipeline):
     """The default demo, started on this release."""
 
-    other = OTHER.get(own_release())
+    own, other = own_release(), OTHER.get(own_release())
 
     def __init__(self, *assignments):
         super().__init__("source.duration_s=600", "source.faults=[]", *assignments)
         self.steps = []
+        self.aligned = []
+        self.broken = []
 
     def process_of(self, name):
         """As of any pipeline; of a process in the root, the program itself instead of the command that made the root."""
@@ -70,24 +100,31 @@ class MixedPipeline(Pipeline):
     def release_of(self, name):
         """By the root folder of the process itself."""
         folder = pathlib.Path(os.readlink(f"/proc/{self.process_of(name)}/root"))
-        return self.other if folder == caches() / self.other / "root" else own_release()
+        return self.other if folder == caches() / self.other / "root" else self.own
 
-    def start_elsewhere(self, words):
+    def start_on(self, release, words):
         """@param words  a process' command line, of either release"""
-        program, *arguments = (word.removeprefix(f"{ROOT}/") for word in words)  # the sources are the working folder there
+        program, *arguments = (word.removeprefix(f"{ROOT}/") for word in words)  # the sources are the working folder on both
         name = arguments[arguments.index("--name") + 1]
-        there = f"build/release/bin/{pathlib.Path(program).name}"
-        command = [str(ROOT / "deploy/release-root"), "--host-network", self.other, there, *arguments]
+        program = pathlib.Path(program).name
+        command = [str(BIN / program), *arguments]
+        if release != self.own:
+            command = [str(ROOT / "deploy/release-root"), "--host-network", release, f"build/release/bin/{program}", *arguments]
         with (self.run_directory / f"{name}.log").open("a") as log:
-            self.started_again.append(subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log))
-        self.until(lambda: self.process_of(name), f"{name} runs on {self.other}", RETURN_TIMEOUT_S)
+            self.started_again.append(
+                subprocess.Popen(command, cwd=ROOT, env=self.environment, stdin=subprocess.DEVNULL, stdout=log, stderr=log))
+        self.until(lambda: self.process_of(name), f"{name} runs on {release}", RETURN_TIMEOUT_S)
+        if self.release_of(name) != release:
+            self.broken.append(f"{name} runs on {self.release_of(name)} in place of {release}")
 
     def step(self, what, action):
         """Does something to the running system, waits until all lanes are behind both voters' output, and notes what it cost."""
-        since = self.merged.newest.identity
         seen = len(self.merged.samples)
+        since = self.merged.newest.identity
         began_s = time.monotonic()
         action()
+        if self.aligned and self.aligned[-1].epoch > since[0]:
+            since = (self.aligned[-1].epoch, 0)
         self.until(Steady(self.merged.samples, has_all_lanes, VOTERS), "all lanes are back", RETURN_TIMEOUT_S)
         until = self.merged.newest.identity
         alone = {sample.identity for sample in self.merged.samples[seen:] if sample.vouching != ALL_LANES}
@@ -100,11 +137,26 @@ class MixedPipeline(Pipeline):
         epoch, sequence = self.truth.newest.identity
         return (epoch, sequence - self.rate_hz // 4)
 
-    def upgrade(self, *names):
-        """As deploy/README says: ends these processes in order, and starts them on the other release."""
+    def move(self, release, *names):
+        """As deploy/README says: ends these processes in order, and starts them on this release."""
         commands = [self.terminate(name) for name in names]
         for words in commands:
-            self.start_elsewhere(words)
+            self.start_on(release, words)
+
+    def move_sensor(self, release):
+        """Begins an epoch whose attitude is unknown, and states it after half a second."""
+        before = self.truth.newest.identity[0]
+        self.move(release, "sensor")
+        self.until(lambda: self._is_voted_behind(before), "the new epoch is voted", RETURN_TIMEOUT_S)
+        result = self.run("reset", "--attitude", ",".join(map(str, STATED)))
+        frames = {int(frame) for frame in re.findall(r"attitude reset by command as of sequence (\d+)", result.stdout)}
+        if result.returncode != 0 or len(frames) != 1:
+            raise NotInTime(f"reset: {result.stdout}{result.stderr}")
+        self.aligned.append(Aligned(self.truth.newest.identity[0], frames.pop()))
+
+    def _is_voted_behind(self, epoch):
+        newest = self.merged.newest.identity
+        return newest[0] > epoch and newest[1] > self.rate_hz // 2
 
     def kill_and_start_again(self, name):
         """A process on the other release, of which `quorient launch` knows nothing."""
@@ -112,7 +164,7 @@ class MixedPipeline(Pipeline):
         words = self._words_of(process)
         self.kill(name)
         self.until(lambda: self.is_gone(process), f"{name} is gone", 5)
-        self.start_elsewhere(words)
+        self.start_on(self.other, words)
 
 
 def has_all_lanes(sample):
@@ -121,13 +173,12 @@ def has_all_lanes(sample):
 
 def kills(system):
     """One lane of the other release; each lane is killed in turn, then a voter; in the end every lane isolates a fault."""
-    system.step(f"lane b starts on {system.other}", lambda: system.upgrade("fdi-b", "attitude-b"))
+    system.step(f"lane b starts on {system.other}", lambda: system.move(system.other, "fdi-b", "attitude-b"))
     system.step("`attitude-b` is killed there", lambda: system.kill_and_start_again("attitude-b"))
     system.step("`fdi-b` is killed there", lambda: system.kill_and_start_again("fdi-b"))
     system.step("`attitude-a` is killed here", lambda: system.kill("attitude-a"))
     system.step("`voter-1` is killed here", lambda: system.kill("voter-1"))
     system.step("axis 1 measures too little", lambda: isolate(system))
-    return {"fdi-b", "attitude-b"}
 
 
 def isolate(system):
@@ -138,16 +189,22 @@ def isolate(system):
 
 
 def upgrade(system):
-    """Lane by lane, then the standby voter, the owner last."""
-    for lane in LANES:
-        system.step(f"lane {lane}", lambda: system.upgrade(f"fdi-{lane}", f"attitude-{lane}"))
-    for voter in reversed(VOTERS):
-        system.step(f"`voter-{voter}`", lambda: system.upgrade(f"voter-{voter}"))
-    return {*(f"{kind}-{lane}" for kind in ("fdi", "attitude") for lane in LANES), *(f"voter-{voter}" for voter in VOTERS)}
+    """Lane by lane, then the standby voter, the owner last; and all the way back."""
+    for release in (system.other, system.own):
+        for lane in LANES:
+            system.step(f"lane {lane} to {release}", lambda: system.move(release, f"fdi-{lane}", f"attitude-{lane}"))
+        for voter in reversed(VOTERS):
+            system.step(f"`voter-{voter}` to {release}", lambda: system.move(release, f"voter-{voter}"))
 
 
-SCENARIOS = {"kills": kills, "upgrade": upgrade}
-MOVES = {"kills": ("quorient-fdi", "quorient-attitude"), "upgrade": ("quorient-fdi", "quorient-attitude", "quorient-voter")}
+def sensor(system):
+    for release in (system.other, system.own):
+        system.step(f"`sensor` to {release}", lambda: system.move_sensor(release))
+
+
+SCENARIOS = {"kills": kills, "upgrade": upgrade, "sensor": sensor}
+MOVES = {"kills": ("quorient-fdi", "quorient-attitude"), "upgrade": ("quorient-fdi", "quorient-attitude", "quorient-voter"),
+         "sensor": ("quorient-sensor",)}
 
 
 def run(name):
@@ -157,28 +214,28 @@ def run(name):
             system.until_running()
             system.step("start", lambda: None)
             since = system.merged.newest.identity
-            moved = SCENARIOS[name](system)
+            SCENARIOS[name](system)
         except NotInTime as problem:
             logs = "".join(f"\n--- {each.stem}\n{each.read_text()[-600:]}" for each in sorted(system.run_directory.glob("*.log")))
             return system.steps, None, [f"{problem}{logs}"]
-        releases = {process: system.release_of(process) for process in moved}
         summary = system.finish()
         faulty = 1 << FAULTY_AXIS if name == "kills" else 0
         samples = (recording.samples for recording in (system.merged, system.plain, system.truth))
         figures = judge(*samples, summary, since, system.end, faulty, VOTERS, has_all_lanes)
-        return system.steps, figures, list(bounds_broken(system, figures, summary, releases, faulty))
+        return system.steps, figures, list(bounds_broken(system, figures, summary, faulty))
 
 
-def bounds_broken(system, figures, summary, releases, faulty):
-    if not all(release == system.other for release in releases.values()):
-        yield f"not all moved processes are of {system.other}: {releases}"
-    if figures.missing:
+def bounds_broken(system, figures, summary, faulty):
+    yield from system.broken
+    for epoch in system.aligned:
+        yield from epoch.broken(system.merged.samples, system.truth.samples)
+    if figures.missing and not system.aligned:
         yield f"{figures.missing} voted frames missing"
     if figures.disordered:
         yield f"{figures.disordered} samples out of order"
     if figures.wrong_isolations:
         yield f"{figures.wrong_isolations} wrong isolations"
-    if figures.plain_gap > LEASE_FRAMES:  # at the end of voter-1
+    if figures.plain_gap > LEASE_FRAMES and not system.aligned:  # at the end of voter-1
         yield f"a plain subscriber misses {figures.plain_gap} frames, {LEASE_FRAMES} allowed"
     yield from errors_beyond(figures, faulty)
     for lane, seen in summary["lanes"].items():

@@ -24,8 +24,11 @@ class MixedSystem(unittest.TestCase):
     def test_no_frame_is_lost_when_processes_die_beside_a_lane_of_the_other_release(self):
         self.holds("kills")
 
-    def test_no_frame_is_lost_while_lane_by_lane_moves_to_the_other_release(self):
+    def test_no_frame_is_lost_while_lane_by_lane_moves_to_the_other_release_and_back(self):
         self.holds("upgrade")
+
+    def test_a_sensor_moves_to_the_other_release_and_back_and_each_time_the_attitude_is_as_stated(self):
+        self.holds("sensor")
 
 
 if __name__ == "__main__":
