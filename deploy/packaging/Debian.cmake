@@ -9,6 +9,10 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL quorient quorient-dev)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+# Packages of one source depend on other libraries on each release. The later release's has the larger version, and so replaces the other.
+file(STRINGS /etc/os-release debian_release REGEX "^VERSION_ID=")
+string(REGEX REPLACE "[^0-9]" "" debian_release "${debian_release}")
+set(CPACK_DEBIAN_PACKAGE_VERSION ${PROJECT_VERSION}+deb${debian_release})
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
 set(CPACK_DEBIAN_QUORIENT_PACKAGE_NAME quorient)
@@ -19,7 +23,9 @@ set(CPACK_DEBIAN_QUORIENT_PACKAGE_SUGGESTS "iceoryx, tshark, prometheus")
 set(CPACK_COMPONENT_QUORIENT_DESCRIPTION "Independent processes isolate failed gyros, integrate the attitude without
 them and vote on the result, so that one right attitude keeps flowing while
 sensors, processes and networks fail. Speaks Fast DDS and Cyclone DDS.")
-set(CPACK_DEBIAN_QUORIENT_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_SOURCE_DIR}/packaging/postinst)
+set(maintainer_scripts postinst prerm postrm)
+list(TRANSFORM maintainer_scripts PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/packaging/)
+set(CPACK_DEBIAN_QUORIENT_PACKAGE_CONTROL_EXTRA ${maintainer_scripts})
 
 set(CPACK_DEBIAN_QUORIENT-DEV_PACKAGE_NAME quorient-dev)
 set(CPACK_DEBIAN_QUORIENT-DEV_PACKAGE_SECTION libdevel)
