@@ -34,14 +34,19 @@ struct Work {
     VectorXd x_of(unsigned n, const double* x) const { return Eigen::Map<const VectorXd>(x, static_cast<Index>(n) - (level ? 1 : 0)); }
 };
 
-/// Copies derivatives to NLopt's rows of n entries; the column of the level gets `slope`.
+/// Copies derivatives to NLopt's rows of n entries, where it asks for them; the column of the level gets `slope`.
+void write(const Work& work, unsigned n, const Eigen::MatrixXd& derivative, double slope, double* gradient)
+{
+    if (gradient == nullptr) return;
+    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> rows(gradient, derivative.rows(), static_cast<Index>(n));
+    rows.leftCols(derivative.cols()) = derivative;
+    if (work.level) rows.rightCols(1).setConstant(slope);
+}
+
 void write(const Work& work, unsigned n, const VectorXd& values, const Eigen::MatrixXd& derivative, double slope, double* result, double* gradient)
 {
     std::copy_n(values.data(), values.size(), result);
-    if (gradient == nullptr) return;
-    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> rows(gradient, values.size(), static_cast<Index>(n));
-    rows.leftCols(derivative.cols()) = derivative;
-    if (work.level) rows.rightCols(1).setConstant(slope);
+    write(work, n, derivative, slope, gradient);
 }
 
 double level_or_value(unsigned n, const double* x, double* gradient, void* data)
@@ -57,9 +62,8 @@ double level_or_value(unsigned n, const double* x, double* gradient, void* data)
     VectorXd values;
     Eigen::MatrixXd derivative;
     work.problem.minimised(work.x_of(n, x), values, gradient != nullptr ? &derivative : nullptr);
-    double value = 0;
-    write(work, n, values, derivative, 0, &value, gradient);
-    return value;
+    write(work, n, derivative, 0, gradient);
+    return values[0];
 }
 
 void below_level(unsigned, double* result, unsigned n, const double* x, double* gradient, void* data)
