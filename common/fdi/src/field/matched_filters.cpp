@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace quorient::fdi::field {
 namespace {
@@ -52,13 +53,14 @@ Suspicions MatchedFilters::examine(const WindowSums& sums, const WindowSums* low
         for (std::size_t m = 0; m < count_; ++m) through.set(m, compared.has(m) && age[m] >= frames);
         if (through.size() < 3) continue;
         const FrameSums over = sums.over(frames);
-        const FrameSums low = low_passed != nullptr && lasting ? low_passed->over(frames) : FrameSums{};
+        std::optional<FrameSums> low;
+        if (low_passed != nullptr && lasting) low.emplace(low_passed->over(frames));
         for (std::size_t c = 0; c < component_count; ++c) {
             const ComponentSums& of = over.component[c];
             if (!Windows::is_even(frames, of.weight, of.weight_squared)) continue;
-            const Window window{of, low_passed != nullptr ? &low.component[c] : nullptr, sums, learning, c, frames, through, through.size() - 1, lasting};
+            const Window window{of, low ? &low->component[c] : nullptr, sums, learning, c, frames, through, through.size() - 1, lasting};
             examine(window, Filter::bias, found);
-            if (frames < Windows::shortest_shaped) continue;
+            if (!lasting || frames < Windows::shortest_shaped) continue;  // what may pass is looked for as a bias alone
             examine(window, Filter::gain, found);
             examine(window, Filter::delay, found);
         }
@@ -104,6 +106,7 @@ void MatchedFilters::examine(const Window& window, Filter filter, Suspicions& fo
     const PerInstrument& deviation = window.lasting || filter != Filter::bias ? sums.deviation : window.sums.unclipped;
     for (std::size_t m = 0; m < count_; ++m) {
         if (!window.compared.has(m)) continue;
+        if (!window.lasting && rules_.smallest_angle && !matters(window, m)) continue;  // nothing of it would count: most windows end here
         Contrast contrast = contrast_of(window, deviation, sums.noise, m);
         contrast.variance += allowance * (1 + 1 / static_cast<double>(contrast.others));
         double certain = certainty(contrast, filter, window.lasting);
