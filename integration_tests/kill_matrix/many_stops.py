@@ -1,0 +1,56 @@
+"""Stops the stronger voter again and again, and lists each sample with which a plain reader of `voted` does not go forward.
+
+`python3 -m integration_tests.kill_matrix.many_stops --stops 1000 [--reader fastdds] [--seed N]`: about 0.45 s a stop. A stop is longer than the
+lease, so that the weaker voter takes over, and finds the stronger one anywhere: also between its decision about a frame and the write.
+"""
+import argparse
+import random
+import sys
+import time
+
+from integration_tests.harness.pipeline import Pipeline, ask_for_priority, at_least_once
+
+STOPPED_S = (0.15, 0.2)
+BETWEEN_S = (0.25, 0.26)  # long enough for the stronger voter to write again
+
+
+def steps_back(samples):
+    """(sample, the one before it) wherever output_sequence does not grow."""
+    return [(now, before) for before, now in zip(samples, samples[1:]) if now.output_sequence <= before.output_sequence]
+
+
+def play(stops, reader, chance):
+    """@returns what the reader received, and when each stop began and ended"""
+    times = []
+    with Pipeline("source.duration_s=3600", "source.faults=[]", plain_vendor=reader) as pipeline:
+        pipeline.until_running()
+        pipeline.until_frame(400)
+        for _ in range(stops):
+            begin_s = time.monotonic()
+            pipeline.stop_for(("voter-1",), chance.uniform(*STOPPED_S))
+            times.append((begin_s, time.monotonic()))
+            time.sleep(chance.uniform(*BETWEEN_S))
+        pipeline.finish()
+        return list(pipeline.plain.samples), times
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--stops", type=at_least_once, default=100)
+    parser.add_argument("--reader", choices=("cyclonedds", "fastdds"), default="cyclonedds", help="whose reader")
+    parser.add_argument("--seed", type=int, default=random.randrange(1 << 30))
+    options = parser.parse_args()
+    ask_for_priority()
+    samples, times = play(options.stops, options.reader, random.Random(options.seed))
+    found = steps_back(samples)
+    takeovers = sum(now.voter == 2 != before.voter for before, now in zip(samples, samples[1:]))
+    print(f"{options.stops} stops (seed {options.seed}), {takeovers} take-overs, {len(samples)} samples, {len(found)} that do not go forward")
+    for now, before in found:
+        begin_s, end_s = max((stop for stop in times if stop[0] < now.arrival_s), default=times[0])
+        print(f"frame {now.identity[1]} of voter-{now.voter} behind frame {before.identity[1]} of voter-{before.voter}, "
+              f"{now.arrival_s - begin_s:.3f} s after a stop and {now.arrival_s - end_s:+.3f} s from its end")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
