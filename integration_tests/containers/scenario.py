@@ -15,12 +15,12 @@ from typing import Callable
 from integration_tests.containers.containers import Containers
 from integration_tests.containers.observed import Observed
 from integration_tests.harness.judge import FINAL_ERROR_RAD, disordered, errors, largest_gap, missing_frames
+from integration_tests.harness.pipeline import ALL_LANES, NotInTime
 from integration_tests.harness.steady import STEADY_FRAMES, Steady
 from integration_tests.harness.streams import DEGRADED, FULL
 from integration_tests.containers.trace import steps_text, table
 
 FAULTY_AXIS, FAULT_RAD_S = 1, 0.05
-ALL_LANES = 0b111
 LANE_A, LANE_B = 0b001, 0b010
 VOTER_1_ON_A, FDI_C_ON_B = "198.18.10.41", "198.18.20.23"
 ICEORYX = 4  # Transport in codes.hpp
@@ -52,10 +52,6 @@ class Verdicts:
         self.passed += bool(good)
         self.failed += not good
         self.say(f"{'ok  ' if good else 'FAIL'} {what}{f': {seen}' if seen != '' else ''}")
-
-
-class NotInTime(Exception):
-    pass
 
 
 def until(condition, what, timeout_s, meanwhile=lambda: None):

@@ -96,7 +96,7 @@ class FlightDemo(ProcessTest):
     """deploy/demo --log FILE on flights of three gyros, as they are."""
 
     def fly(self, log):
-        code, summary, stderr = self.launch(CONFIGURATIONS / "flight.yaml", "--log", log, "--speed", 2)
+        code, summary, stderr = self.launch(CONFIGURATIONS / "flight.yaml", "--log", log, "--speed", 4)
         self.assertEqual(code, 0, f"{summary}\n{stderr}")
         self.assertEqual(len(summary["lanes"]), 3)
         self.assertEqual(summary["voted"]["missing"], 0)

@@ -5,7 +5,7 @@ import unittest
 from integration_tests.harness.processes import CONFIGURATIONS, ROOT, ProcessTest
 
 VESSEL = CONFIGURATIONS / "vessel.yaml"
-SPEED = 4  # 80 s of the scenario in 20 s
+SPEED = 6  # 80 s of the scenario in 14 s
 
 
 class VesselDemo(ProcessTest):

@@ -1,6 +1,7 @@
 #include "csv/column_name.hpp"
 
 #include <gtest/gtest.h>
+#include <ostream>
 
 namespace quorient::recording::csv {
 namespace {
@@ -12,6 +13,11 @@ struct Case {
     const char* owner;
     const char* unit;
 };
+
+void PrintTo(const Case& column, std::ostream* stream)
+{
+    *stream << '\'' << column.text << '\'';
+}
 
 class ColumnNames : public testing::TestWithParam<Case> {};
 
