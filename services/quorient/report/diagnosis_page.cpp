@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace quorient::cli {
 namespace {
@@ -24,6 +25,7 @@ constexpr std::string_view style =
     "pre{font-size:12px;white-space:pre-wrap;overflow-wrap:anywhere}figure .l{mix-blend-mode:multiply}@media print{body{margin:0;max-width:none}h1{background:none}}";
 
 constexpr BandLook rates_look{Spacing::linear, 150};
+constexpr double label_width = 46;
 constexpr int most_ticks = 5;  // their labels have room on a phone
 
 /// The compared instruments, by their places in the report.
@@ -35,13 +37,17 @@ std::vector<std::size_t> compared_of(const Report& report)
     return compared;
 }
 
+/// Up to the last bin that holds something.
+TimeSpan span_of(const diagnosis::Plot& plot)
+{
+    const auto last = std::find_if(plot.bins.rbegin(), plot.bins.rend(), [](const diagnosis::PlotBin& bin) { return bin.filled; });
+    const double length_s = plot.bin_s * static_cast<double>(std::distance(last, plot.bins.rend()));
+    return {plot.first_s, plot.first_s + std::max(1e-3, length_s), label_width, most_ticks};
+}
+
 class Page {
 public:
-    explicit Page(const Report& report)
-        : report_(report), compared_(compared_of(report)),
-          span_{report.plot.first_s, report.plot.first_s + std::max(1e-3, report.plot.bin_s * static_cast<double>(report.plot.bins.size())), 46, most_ticks}
-    {
-    }
+    explicit Page(const Report& report) : report_(report), compared_(compared_of(report)), span_(span_of(report.plot)) {}
 
     std::string text() const
     {
