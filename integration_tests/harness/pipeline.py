@@ -52,7 +52,8 @@ def ask_for_priority():
 class Pipeline:
     """Use as a context: whatever happens inside, every process that it started is ended by its id. With a level it makes keys and runs secured."""
 
-    def __init__(self, *assignments, plain_vendor="cyclonedds", launch_timeout_s=30, rate_hz=RATE_HZ, level="none", prepare=lambda keys: None):
+    def __init__(self, *assignments, plain_vendor="cyclonedds", launch_timeout_s=30, rate_hz=RATE_HZ, level="none", prepare=lambda keys: None,
+                 without=()):
         self.rate_hz = rate_hz
         self.run_directory = pathlib.Path(tempfile.mkdtemp(prefix="quorient-kill-"))
         self.environment = dict(os.environ, QUORIENT_RUN_DIR=str(self.run_directory))
@@ -64,10 +65,11 @@ class Pipeline:
         if self.keys:
             prepare(self.keys)
             assignments += (f"security.directory={self.keys}", f"security.level={level}")
-        settings = [word for assignment in ("expect=null", f"source.rate_hz={rate_hz}", *assignments) for word in ("--set", assignment)]
+        self.settings = [word for assignment in ("expect=null", f"source.rate_hz={rate_hz}", *assignments) for word in ("--set", assignment)]
+        absent = [word for name in without for word in ("--without", name)]
         self.launched_s = time.monotonic()
         self.launch = subprocess.Popen(
-            self.command("launch", CONFIGURATIONS / "demo.yaml", "--domain", self.domain, "--json", *settings),
+            self.command("launch", CONFIGURATIONS / "demo.yaml", "--domain", self.domain, "--json", *absent, *self.settings),
             env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
         )
         self.merged = self._record("voter_output", "cyclonedds", parse_voted)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from integration_tests.harness.judge import FINAL_ERROR_RAD, errors_beyond, first_judged, judge, missing_frames
 from integration_tests.harness.pipeline import ALL_LANES, END_OF_GRACE_FRAMES, NotInTime, Pipeline, ask_for_priority
-from integration_tests.harness.processes import BIN, ROOT
+from integration_tests.harness.processes import BIN, CONFIGURATIONS, ROOT
 from integration_tests.harness.quaternion import angle, conjugate, product
 from integration_tests.harness.steady import Steady
 from integration_tests.harness.streams import HELD, SINGLE
@@ -52,14 +52,14 @@ class Aligned(NamedTuple):
     epoch: int
     frame: int
 
-    def broken(self, samples, truths):
-        """Yields a sentence for each promise that does not hold in this epoch."""
+    def broken(self, samples, truths, last):
+        """Yields a sentence for each promise that does not hold in this epoch. @param last  the last frame of the run that is judged"""
         true = {truth.identity[1]: truth.attitude for truth in truths if truth.identity[0] == self.epoch}
         voted = [sample for sample in samples if sample.identity[0] == self.epoch]
         if any(sample.level not in HELD and sample.identity[1] < self.frame for sample in voted):
             yield "an attitude was claimed before it was stated"
         missing = missing_frames(voted, {(self.epoch, sequence): None for sequence in true}, (self.epoch, self.frame),
-                                 (self.epoch, max(true) - END_OF_GRACE_FRAMES))
+                                 min(last, (self.epoch, max(true) - END_OF_GRACE_FRAMES)))
         if missing:
             yield f"{len(missing)} voted frames missing after the attitude was stated"
         turned = {sequence: product(conjugate(true[self.frame]), attitude) for sequence, attitude in true.items()}
@@ -76,11 +76,15 @@ class MixedPipeline(Pipeline):
 
     own, other = own_release(), OTHER.get(own_release())
 
-    def __init__(self, *assignments):
-        super().__init__("source.duration_s=600", "source.faults=[]", *assignments)
+    def __init__(self, moves_sensor):
+        """@param moves_sensor  it is then started beside `quorient launch`, which ends with its own sensor"""
+        super().__init__("source.duration_s=600", "source.faults=[]", without=("sensor",) if moves_sensor else ())
         self.steps = []
         self.aligned = []
         self.broken = []
+        if moves_sensor:
+            demo = str(CONFIGURATIONS / "demo.yaml")
+            self.start_on(self.own, ["quorient-sensor", demo, "--name", "sensor", "--domain", str(self.domain), *self.settings])
 
     def process_of(self, name):
         """As of any pipeline; of a process in the root, the program itself instead of the command that made the root."""
@@ -209,7 +213,7 @@ MOVES = {"kills": ("quorient-fdi", "quorient-attitude"), "upgrade": ("quorient-f
 
 def run(name):
     """@returns the steps, the figures, and a sentence for each promise that did not hold."""
-    with MixedPipeline() as system:
+    with MixedPipeline(name == "sensor") as system:
         try:
             system.until_running()
             system.step("start", lambda: None)
@@ -228,7 +232,7 @@ def run(name):
 def bounds_broken(system, figures, summary, faulty):
     yield from system.broken
     for epoch in system.aligned:
-        yield from epoch.broken(system.merged.samples, system.truth.samples)
+        yield from epoch.broken(system.merged.samples, system.truth.samples, system.end)
     if figures.missing and not system.aligned:
         yield f"{figures.missing} voted frames missing"
     if figures.disordered:
