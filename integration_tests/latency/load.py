@@ -57,7 +57,8 @@ def run(vendors, rate_hz, free, options):
         events = start(BIN / "quorient", "echo", "event", "--json", "--domain", domain)
         launch = start(BIN / "quorient", "launch", CONFIGURATIONS / "demo.yaml", "--domain", domain, "--json", *settings([
             f"source.rate_hz={rate_hz}", f"source.duration_s={options.seconds}", "stamps=true", "expect=null",
-            f"source.faults=['axis={FAULTY_AXIS},kind=bias,value=0.05,start={FAULT_S}']", *VENDORS[vendors]]))
+            f"source.faults=['axis={FAULTY_AXIS},kind=bias,value=0.05,start={FAULT_S}']", *VENDORS[vendors],
+            *([f"priority={options.priority}"] if options.priority else [])]))
         try:
             summary = exact_json.loads(launch.communicate(timeout=options.seconds + PATIENCE_S)[0])
         finally:
@@ -92,6 +93,7 @@ def main():
     parser.add_argument("--rates", type=int, nargs="+", default=[200, 1000])
     parser.add_argument("--vendors", nargs="+", choices=VENDORS, default=["both vendors"])
     parser.add_argument("--seconds", type=float, default=15, help="of frames in each run")
+    parser.add_argument("--priority", type=int, help="the system file's `priority`; the load has none")
     parser.add_argument("--domain", type=int, default=58)
     options = parser.parse_args()
     print("| " + " | ".join(HEADER) + " |\n|" + "---|" * len(HEADER), flush=True)
