@@ -188,6 +188,41 @@ TEST(FieldRules, fast_lane_leaves_a_small_fault_of_a_calibrated_array_out_sooner
     EXPECT_LT(with.left_out_delay, without.left_out_delay);
 }
 
+/// Twelve seconds of rest, which teach no gain; then turns to and fro of up to 25 deg/s in vibration that each instrument feels in its own way.
+Scene take_off(double gain, Mount mount = Mount::board)
+{
+    return {[gain](std::uint64_t seed) {
+                FieldScene scene = spoiled(seed, from_onset([gain](auto& rates) { rates[4] *= gain; }), {.own_vibration_deg_s = 0.4});
+                scene.motion = [](double t) -> Eigen::Vector3d {
+                    const double flown = std::max(0.0, t - 12);
+                    return std::min(1.0, 10 * flown) * Eigen::Vector3d(10 * std::sin(5 * t), 25 * std::sin(6 * flown), 10 * std::sin(3 * t));
+                };
+                return scene;
+            },
+            18, gain == 1 ? 0 : axes_of(1), {.mount = mount}};
+}
+
+TEST(FieldRules, brief_gains_leave_a_gain_out_before_it_lasts)
+{
+    constexpr std::uint64_t soon = 25;
+    const Outcomes with = play_all(take_off(0.8));
+    EXPECT_EQ(with.named_sound, 0U);
+    EXPECT_EQ(with.named_faulty, seeds);
+    EXPECT_LE(with.left_out_delay, soon);
+    EXPECT_GT(play_all(take_off(0.8), &FieldRules::brief_gains).left_out_delay, soon);
+}
+
+TEST(FieldRules, brief_gains_leave_no_sound_instrument_out)
+{
+    EXPECT_EQ(play_all(take_off(1)).left_out_frames, 0U);
+}
+
+TEST(FieldRules, brief_gains_are_not_looked_for_on_a_structure)
+{
+    const Scene scene = take_off(0.8, Mount::structure);
+    EXPECT_EQ(play_all(scene).left_out_delay, play_all(scene, &FieldRules::brief_gains).left_out_delay);
+}
+
 TEST(FieldRules, saturation_blames_nobody_where_all_are_at_their_range)
 {
     const Scene scene{[](std::uint64_t seed) {

@@ -35,8 +35,8 @@ struct MatchedFilters::Contrast {
     std::size_t others;
 };
 
-MatchedFilters::MatchedFilters(std::size_t instruments, double interval_s, const FieldRules& rules)
-    : count_(instruments), rules_(rules), windows_(interval_s)
+MatchedFilters::MatchedFilters(std::size_t instruments, double interval_s, Mount mount, const FieldRules& rules)
+    : count_(instruments), rules_(rules), brief_gains_(rules.brief_gains && mount == Mount::board), windows_(interval_s)
 {
 }
 
@@ -60,9 +60,9 @@ Suspicions MatchedFilters::examine(const WindowSums& sums, const WindowSums* low
             if (!Windows::is_even(frames, of.weight, of.weight_squared)) continue;
             const Window window{of, low ? &low->component[c] : nullptr, sums, learning, c, frames, through, through.size() - 1, lasting};
             examine(window, Filter::bias, found);
-            if (!lasting || frames < Windows::shortest_shaped) continue;  // what may pass is looked for as a bias alone
-            examine(window, Filter::gain, found);
-            examine(window, Filter::delay, found);
+            if (frames < Windows::shortest_shaped) continue;
+            if (lasting || brief_gains_) examine(window, Filter::gain, found);
+            if (lasting) examine(window, Filter::delay, found);
         }
     }
     return found;
@@ -94,7 +94,9 @@ inline MatchedFilters::Contrast MatchedFilters::contrast_of(const Window& window
 inline double MatchedFilters::certainty(const Contrast& contrast, Filter filter, bool lasting) const
 {
     const double rho = rules_.others_must_agree ? Windows::scatter_factor(contrast.others - 1) : 0;
-    const double bound = Windows::sigmas(filter != Filter::bias, lasting) * std::sqrt(contrast.variance) + rho * contrast.scatter;
+    const bool brief_gain = filter == Filter::gain && !lasting;
+    const double sigmas = brief_gain ? Windows::steady_gain_sigmas : Windows::sigmas(filter != Filter::bias, lasting);
+    const double bound = sigmas * std::sqrt(contrast.variance) + rho * contrast.scatter;
     return bound > 0 ? std::abs(contrast.difference) / bound : 0;
 }
 
@@ -115,8 +117,17 @@ void MatchedFilters::examine(const Window& window, Filter filter, Suspicions& fo
             certain = agreeing(window, filter, m, certain, contrast.difference > 0);
         }
         found.take({certain, m, window.component, window.frames, filter}, window.lasting, [&] { return persists(window, filter, m); },
-                   [&] { return filter == Filter::bias && certain > found.brief_of[m] && (!rules_.smallest_angle || matters(window, m)); });
+                   [&] { return certain > found.brief_of[m] && may_pass(window, filter, m); });
     }
+}
+
+/// Whether a contradiction leaves an instrument out before it lasts: that of a bias, or a steady one of a gain, where it matters.
+inline bool MatchedFilters::may_pass(const Window& window, Filter filter, std::size_t m) const
+{
+    const bool brief_gain = brief_gains_ && filter == Filter::gain && !window.lasting;
+    if (filter != Filter::bias && !brief_gain) return false;
+    if (window.lasting && rules_.smallest_angle && !matters(window, m)) return false;  // shorter ones have been asked before
+    return !brief_gain || Windows::steady(window.frames, [&](std::size_t age) { return contradiction_before(window, filter, m, age); });
 }
 
 /// Whether an attitude that follows this instrument would notice.

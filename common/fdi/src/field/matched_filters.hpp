@@ -16,10 +16,12 @@ namespace quorient::fdi::field {
 ///
 /// A contradiction lasts if three of the four quarters of a window of 0.4 s or more show it, and, in windows shorter than 0.84 s, if it is there in
 /// the newest frames and was there 0.32 s before: a shock of up to 0.3 s never lasts.
+///
+/// In shorter windows a bias leaves an instrument out, and on one rigid block a gain too, where three of their quarters show it.
 class MatchedFilters {
 public:
     /// @param low_passed  the same sums below 2 Hz: gain and delay count only where they agree
-    MatchedFilters(std::size_t instruments, double interval_s, const FieldRules& rules);
+    MatchedFilters(std::size_t instruments, double interval_s, Mount mount, const FieldRules& rules);
 
     /// @param age  frames that each instrument has been compared for without a break
     /// @param frame  counts frames: which windows are due
@@ -35,6 +37,7 @@ private:
 
     Contrast contrast_of(const Window& window, const PerInstrument& deviation, const PerInstrument& own_noise, std::size_t m) const;
     double certainty(const Contrast& contrast, Filter filter, bool lasting) const;
+    bool may_pass(const Window& window, Filter filter, std::size_t m) const;
     void examine(const Window& window, Filter filter, Suspicions& found) const;
     double agreeing(const Window& window, Filter filter, std::size_t m, double certainty, bool positive) const;
     bool matters(const Window& window, std::size_t m) const;
@@ -43,6 +46,7 @@ private:
 
     std::size_t count_;
     FieldRules rules_;
+    bool brief_gains_;  ///< a gain leaves an instrument out before it lasts
     Windows windows_;
 };
 

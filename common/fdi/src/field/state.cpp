@@ -31,7 +31,7 @@ FieldDetector::State::State(geometry::SensorCluster cluster, const InstrumentArr
       start_(array_.size(), framing_.interval_s(), figures_),
       saturation_(cluster_, framing_.axes()),
       comparison_(array_.size(), framing_.interval_s(), settings.mount, field::allowed_by(settings, framing_.interval_s()), rules),
-      filters_(array_.size(), framing_.interval_s(), rules),
+      filters_(array_.size(), framing_.interval_s(), settings.mount, rules),
       diagnostics_(cluster_, array_, framing_.axes(), comparison_.learning().allowed()),
       history_(array_.size()),
       accusations_(array_.size(), least_in_use, framing_.interval_s())

@@ -53,6 +53,10 @@ public:
         return weight_squared > no_weight && weight * weight >= full;
     }
 
+    /// Standard deviations that a brief contradiction in the shape of a gain must exceed where it is steady(). Fewer than for a bias, since no shock
+    /// follows the rate.
+    static constexpr double steady_gain_sigmas = lasting_sigmas;
+
     /// Standard deviations that a contradiction must exceed.
     static double sigmas(bool shaped, bool lasting)
     {
@@ -73,22 +77,11 @@ public:
     }
     static constexpr double least_lasting_angle_rad = 0.1 * std::numbers::pi / 180;
 
-    /// Whether a contradiction lasts: three of the four quarters show it, and in windows shorter than 0.84 s it spans more than any shock.
-    /// @param total, energy  of an age: running totals of the contradiction and of its template's square, up to that age
-    template <class Total, class Energy>
-    bool persists(std::size_t window, Total total, Energy energy) const
-    {
-        constexpr double long_s = 0.84;
-        return in_three_quarters(window, total) && (seconds(window) >= long_s || spans(window, total, energy));
-    }
-
-private:
-    static constexpr double lock_s = 0.40;
-    static constexpr double longest_window_s = 8.2;
-
-    /// In the same sense, each with a share of its own: a shock that is shorter than two quarters cannot.
+    /// Whether three of the four quarters show a contradiction in the same sense, each with a share of its own: a shock that is shorter than two
+    /// quarters cannot.
+    /// @param total  of an age: running total of the contradiction up to that age
     template <class Total>
-    static bool in_three_quarters(std::size_t window, Total total)
+    static bool steady(std::size_t window, Total total)
     {
         constexpr std::size_t quarters = 4;
         constexpr std::size_t quarters_that_agree = 3;
@@ -103,6 +96,19 @@ private:
         }
         return agree >= quarters_that_agree;
     }
+
+    /// Whether a contradiction lasts: it is steady, and in windows shorter than 0.84 s it spans more than any shock.
+    /// @param total, energy  as above, and the running total of the template's square
+    template <class Total, class Energy>
+    bool persists(std::size_t window, Total total, Energy energy) const
+    {
+        constexpr double long_s = 0.84;
+        return steady(window, total) && (seconds(window) >= long_s || spans(window, total, energy));
+    }
+
+private:
+    static constexpr double lock_s = 0.40;
+    static constexpr double longest_window_s = 8.2;
 
     /// The newest frames, and those of 0.32 s ago, contradict at least half as much as the whole window.
     template <class Total, class Energy>

@@ -22,6 +22,7 @@ struct FieldRules {
     bool erratic = true;            ///< an instrument that is off in a third of its frames
     bool outside_class = true;      ///< a resting start and what is learned stay within the class
     bool fast_lane = true;          ///< where a calibration has measured the motion noise, `accumulating` may leave an instrument out
+    bool brief_gains = true;        ///< on one rigid block, a gain that shows in a short window leaves an instrument out
     bool saturation = true;         ///< beyond its range an axis knows nothing
 };
 
