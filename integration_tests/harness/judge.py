@@ -12,7 +12,7 @@ class Figures:
     frames: int = 0
     missing: int = 0  # frames of the publisher that the merged stream never answered
     plain_gap: int = 0  # largest run of frames that a plain subscriber of `voted` did not see
-    disordered: int = 0  # output_sequence that did not increase, of one voter or in the plain stream
+    steps_back: list = field(default_factory=list)  # (sample, the one before): output_sequence did not increase, of one voter or in the plain stream
     largest_error_rad: float = 0
     final_error_rad: float = 0
     contamination_rad: float = 0  # what the fault can do to the attitude in one frame
@@ -22,6 +22,10 @@ class Figures:
     outside_sigmas: int = 0  # bridged attitudes whose error is above 1e-5 rad and five of their standard deviations
     claims: int = 0  # frames of a later epoch with a level that claims to know the attitude
     levels: set = field(default_factory=set)
+
+    @property
+    def disordered(self):
+        return len(self.steps_back)
 
 
 def errors(samples, truth):
@@ -60,14 +64,21 @@ def largest_gap(samples, truth, first, end):
     return max((length for _, length in gaps(samples, truth, first, end)), default=0)
 
 
-def disordered(samples, end, key):
-    last, count = {}, 0
+def steps_back(samples, end, key):
+    """(sample, the one before it with the same key) wherever output_sequence does not increase."""
+    last, found = {}, []
     for sample in samples:
         if sample.identity > end:
             continue
-        count += sample.output_sequence <= last.get(key(sample), 0)
-        last[key(sample)] = sample.output_sequence
-    return count
+        before = last.get(key(sample))
+        if before and sample.output_sequence <= before.output_sequence:
+            found.append((sample, before))
+        last[key(sample)] = sample
+    return found
+
+
+def disordered(samples, end, key):
+    return len(steps_back(samples, end, key))
 
 
 def frames_until(samples, since, condition, steady=20):
@@ -93,7 +104,7 @@ def judge(merged, plain, truths, summary, since, end, faulty, voters, full):
     one_epoch = len({identity[0] for identity in truth}) == 1
     figures.missing = min(own_missing, summary["voted"]["missing"]) if one_epoch else own_missing
     figures.plain_gap = largest_gap(plain, truth, first_judged(plain), end)
-    figures.disordered = disordered(merged, end, lambda sample: sample.voter) + disordered(plain, end, lambda sample: 0)
+    figures.steps_back = steps_back(merged, end, lambda sample: sample.voter) + steps_back(plain, end, lambda sample: 0)
 
     judged = [(identity, error, sample) for identity, error, sample in errors(merged, truth) if identity[0] == since[0]]
     figures.largest_error_rad = max(error for _, error, _ in judged)

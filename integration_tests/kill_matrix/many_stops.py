@@ -1,25 +1,21 @@
 """Stops the stronger voter again and again, and lists each sample with which a plain reader of `voted` does not go forward.
 
-`python3 -m integration_tests.kill_matrix.many_stops --stops 1000 [--reader fastdds] [--seed N]`: about 0.45 s a stop. A stop is longer than the
-lease, so that the weaker voter takes over, and finds the stronger one anywhere: also between its decision about a frame and the write.
+`python3 -m integration_tests.kill_matrix.many_stops --stops 1000 [--stopped-s 2] [--reader fastdds] [--seed N]`: about 0.25 s and the stop itself for
+each. A stop is longer than the lease, so that the weaker voter takes over, and finds the stronger one anywhere: also between its decision about a
+frame and the write.
 """
 import argparse
 import random
 import sys
 import time
 
+from integration_tests.harness.judge import steps_back
 from integration_tests.harness.pipeline import Pipeline, ask_for_priority, at_least_once
 
-STOPPED_S = (0.15, 0.2)
 BETWEEN_S = (0.25, 0.26)  # long enough for the stronger voter to write again
 
 
-def steps_back(samples):
-    """(sample, the one before it) wherever output_sequence does not grow."""
-    return [(now, before) for before, now in zip(samples, samples[1:]) if now.output_sequence <= before.output_sequence]
-
-
-def play(stops, reader, chance):
+def play(stops, stopped_s, reader, chance):
     """@returns what the reader received, and when each stop began and ended"""
     times = []
     with Pipeline("source.duration_s=3600", "source.faults=[]", plain_vendor=reader) as pipeline:
@@ -27,7 +23,7 @@ def play(stops, reader, chance):
         pipeline.until_frame(400)
         for _ in range(stops):
             begin_s = time.monotonic()
-            pipeline.stop_for(("voter-1",), chance.uniform(*STOPPED_S))
+            pipeline.stop_for(("voter-1",), chance.uniform(0.75 * stopped_s, stopped_s))
             times.append((begin_s, time.monotonic()))
             time.sleep(chance.uniform(*BETWEEN_S))
         pipeline.finish()
@@ -37,12 +33,13 @@ def play(stops, reader, chance):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--stops", type=at_least_once, default=100)
+    parser.add_argument("--stopped-s", type=float, default=0.2, help="longest stop")
     parser.add_argument("--reader", choices=("cyclonedds", "fastdds"), default="cyclonedds", help="whose reader")
     parser.add_argument("--seed", type=int, default=random.randrange(1 << 30))
     options = parser.parse_args()
     ask_for_priority()
-    samples, times = play(options.stops, options.reader, random.Random(options.seed))
-    found = steps_back(samples)
+    samples, times = play(options.stops, options.stopped_s, options.reader, random.Random(options.seed))
+    found = steps_back(samples, samples[-1].identity, lambda sample: 0)
     takeovers = sum(now.voter == 2 != before.voter for before, now in zip(samples, samples[1:]))
     print(f"{options.stops} stops (seed {options.seed}), {takeovers} take-overs, {len(samples)} samples, {len(found)} that do not go forward")
     for now, before in found:

@@ -6,15 +6,14 @@ import time
 from typing import NamedTuple
 
 from integration_tests.harness.judge import errors_beyond, judge
-from integration_tests.harness.pipeline import ALL_LANES, RATE_HZ, NotInTime, Pipeline, ask_for_priority, at_least_once
+from integration_tests.harness.pipeline import ALL_LANES, RATE_HZ, NotInTime, Pipeline, ask_for_priority, at_least_once, rate_between
 from integration_tests.harness.steady import STEADY_FRAMES, Steady
 from integration_tests.harness.streams import COASTING, HELD, LOST, SINGLE
 
 FAULT_S = 1.5
 FAULTY_AXIS = 1
-ACT_FRAME = FAULT_S * RATE_HZ + 1.5  # the second contaminated frame is on its way: no detector can have confirmed yet
 STOPPED_S = 2.0
-LEASE_FRAMES = 14  # 50 ms lease + 20 ms, at 5 ms a frame
+VOID_ALLOWED = 2  # attempts of a cell in which the stop found a voter within a write
 
 
 class Cell(NamedTuple):
@@ -50,6 +49,16 @@ EVERYTHING = [
         ("kill", "stop"), ((False, "cyclonedds"), (True, "fastdds")))),
 ]
 BY_NAME = {cell.name: cell for cell in EVERYTHING}
+
+
+def act_frame(rate_hz):
+    """The second contaminated frame is on its way: no detector can have confirmed yet."""
+    return FAULT_S * rate_hz + 1.5
+
+
+def lease_frames(rate_hz):
+    """What a plain reader may miss where the stronger voter ends: one lease of 50 ms, and 20 ms."""
+    return 70 * rate_hz // 1000
 
 
 def act(pipeline, cell):
@@ -95,13 +104,14 @@ def await_outcome(pipeline, cell, since):
     pipeline.until(Steady(pipeline.merged.samples, restored(cell), voters_left(cell)), "steady again", 10)
 
 
-def run(cell, level="none"):
-    """@returns figures and the bounds that were not met."""
+def run(cell, level="none", rate_hz=RATE_HZ):
+    """@returns figures, the bounds that were not met, and logs where there are any."""
     faults = [f"axis={FAULTY_AXIS},kind=scale,value=0.8,start={FAULT_S}"] if cell.fault else []
     composition = [f"compose=[[{', '.join(cell.roles)}]]"] if cell.composed else []
-    with Pipeline("source.duration_s=600", f"source.faults={faults}", *composition, plain_vendor=cell.plain_vendor, level=level) as pipeline:
+    assignments = ("source.duration_s=600", f"source.faults={faults}", *composition)
+    with Pipeline(*assignments, plain_vendor=cell.plain_vendor, level=level, rate_hz=rate_hz) as pipeline:
         pipeline.until_running()
-        since = pipeline.until_frame(ACT_FRAME)
+        since = pipeline.until_frame(act_frame(rate_hz))
         act(pipeline, cell)
         late = None
         try:
@@ -112,22 +122,31 @@ def run(cell, level="none"):
         end = pipeline.end if cell.act != "stop" or cell.roles != ("sensor",) else max(pipeline.end, since)
         figures = judge(pipeline.merged.samples, pipeline.plain.samples, pipeline.truth.samples, summary, since, end,
                         1 << FAULTY_AXIS if cell.fault else 0, voters_left(cell), restored(cell))
-        broken = list(bounds_broken(cell, figures, pipeline.merged.samples, since))
+        broken = list(bounds_broken(cell, figures, pipeline.merged.samples, since, rate_hz))
         if late:
             broken.append(late)
         logs = {name: pipeline.log_of(name) for name in ("voter-1", "voter-2", *cell.processes)} if broken else {}
     return figures, broken, logs
 
 
-def bounds_broken(cell, figures, merged, since):
+def invented(merged, voter):
+    """Whether this voter changed the attitude that it repeated."""
+    samples = [sample for sample in merged if sample.voter == voter]
+    return any(now.attitude != before.attitude for before, now in zip(samples, samples[1:])
+               if now.level in HELD and before.level in HELD and now.identity[0] == before.identity[0])
+
+
+def bounds_broken(cell, figures, merged, since, rate_hz):
     """Yields a sentence for each promise that does not hold."""
     if figures.wrong_isolations:
         yield f"{figures.wrong_isolations} wrong isolations"
     if figures.disordered:
-        yield f"{figures.disordered} samples out of order"
+        now, before = figures.steps_back[0]
+        yield (f"{figures.disordered} samples out of order: frame {now.identity[1]} of voter-{now.voter} behind "
+               f"frame {before.identity[1]} of voter-{before.voter}, acted at frame {since[1]}")
     if figures.missing and not cell.touches("sensor"):
         yield f"{figures.missing} voted frames missing"
-    plain_allowed = LEASE_FRAMES if cell.touches("voter-1") else 0
+    plain_allowed = lease_frames(rate_hz) if cell.touches("voter-1") else 0
     if not cell.touches("sensor") and figures.plain_gap > plain_allowed:
         yield f"a plain subscriber misses {figures.plain_gap} frames, {plain_allowed} allowed"
     if cell.roles != ("sensor",):
@@ -147,8 +166,7 @@ def bounds_broken(cell, figures, merged, since):
             yield "LOST was never said"
         if figures.claims:
             yield f"{figures.claims} frames of the new epoch claim to know the attitude"
-        held = [sample for sample in merged if sample.identity[0] == since[0] and sample.level in HELD]
-        if any(a.attitude != b.attitude for a, b in zip(held, held[1:]) if a.voter == b.voter):
+        if any(invented(merged, voter) for voter in (1, 2)):
             yield "an attitude was invented while no frames came"
 
 
@@ -164,16 +182,30 @@ def row(cell, figures, broken, attempts):
             figures.wrong_isolations, "–" if figures.frames_to_full is None else figures.frames_to_full, outcome)
 
 
-def attempt(cell, attempts_allowed=2, level="none"):
+def found_within_write(cell, figures, since_frame):
+    """Whether the stop found the stronger voter within the DDS library's write. That write ends when the process goes on: one old sample, of the frame
+    that was due at the stop. No program can prevent it."""
+    if cell.act != "stop" or not cell.touches("voter-1") or figures is None or figures.disordered != 1:
+        return False
+    now, before = figures.steps_back[0]
+    return (now.voter, before.voter) == (1, 2) and abs(now.identity[1] - since_frame) <= 2
+
+
+def attempt(cell, attempts_allowed=2, level="none", rate_hz=RATE_HZ):
     """On a shared machine one attempt may get too little processor time: the second one counts, and the table says so."""
-    for attempts in range(1, attempts_allowed + 1):
+    attempts = void = 0
+    while attempts < attempts_allowed:
+        attempts += 1
         try:
-            figures, broken, logs = run(cell, level)
+            figures, broken, logs = run(cell, level, rate_hz)
         except NotInTime as problem:
             figures, broken, logs = None, [str(problem)], {}
         if not broken:
             break
         print(f"{cell.name}: attempt {attempts}: {'; '.join(broken)}", file=sys.stderr, flush=True)
+        if void < VOID_ALLOWED and len(broken) == 1 and found_within_write(cell, figures, int(act_frame(rate_hz))):
+            print(f"{cell.name}: this attempt is void: the stop found the voter within a write", file=sys.stderr, flush=True)
+            attempts, void = attempts - 1, void + 1
     return figures, broken, logs, attempts
 
 
@@ -185,6 +217,7 @@ def main():
     parser.add_argument("--logs", action="store_true", help="show the logs of the processes of a cell that does not hold")
     parser.add_argument("--attempts", type=at_least_once, default=2)
     parser.add_argument("--level", choices=("none", "sign", "encrypt"), default="none", help="DDS Security of the demo")
+    parser.add_argument("--rate", type=rate_between(50, 200), default=RATE_HZ, help="frames per second")
     options = parser.parse_args()
     if options.list:
         print("\n".join(BY_NAME))
@@ -198,7 +231,7 @@ def main():
     failed = 0
     print("| " + " | ".join(HEADER) + " |\n|" + "---|" * len(HEADER), flush=True)
     for cell in cells:
-        figures, broken, logs, attempts = attempt(cell, options.attempts, options.level)
+        figures, broken, logs, attempts = attempt(cell, options.attempts, options.level, options.rate)
         failed += bool(broken)
         print("| " + " | ".join(map(str, row(cell, figures, broken, attempts))) + " |", flush=True)
         if options.logs:

@@ -11,12 +11,12 @@ import time
 from typing import NamedTuple
 
 from integration_tests.harness.judge import FINAL_ERROR_RAD, errors_beyond, first_judged, judge, missing_frames
-from integration_tests.harness.pipeline import ALL_LANES, END_OF_GRACE_FRAMES, NotInTime, Pipeline, ask_for_priority
+from integration_tests.harness.pipeline import ALL_LANES, END_OF_GRACE_FRAMES, RATE_HZ, NotInTime, Pipeline, ask_for_priority
 from integration_tests.harness.processes import BIN, CONFIGURATIONS, ROOT
 from integration_tests.harness.quaternion import angle, conjugate, product
 from integration_tests.harness.steady import Steady
 from integration_tests.harness.streams import HELD, SINGLE
-from integration_tests.kill_matrix.run_cell import LEASE_FRAMES
+from integration_tests.kill_matrix.run_cell import lease_frames
 
 OTHER = {"bookworm": "trixie", "trixie": "bookworm"}
 RETURN_TIMEOUT_S = 40  # a command in the root begins some seconds later than on the machine itself
@@ -239,8 +239,9 @@ def bounds_broken(system, figures, summary, faulty):
         yield f"{figures.disordered} samples out of order"
     if figures.wrong_isolations:
         yield f"{figures.wrong_isolations} wrong isolations"
-    if figures.plain_gap > LEASE_FRAMES and not system.aligned:  # at the end of voter-1
-        yield f"a plain subscriber misses {figures.plain_gap} frames, {LEASE_FRAMES} allowed"
+    allowed = lease_frames(RATE_HZ)
+    if figures.plain_gap > allowed and not system.aligned:  # at the end of voter-1
+        yield f"a plain subscriber misses {figures.plain_gap} frames, {allowed} allowed"
     yield from errors_beyond(figures, faulty)
     for lane, seen in summary["lanes"].items():
         if seen["isolated"] != ([FAULTY_AXIS] if faulty else []):
