@@ -129,11 +129,10 @@ def run(cell, level="none", rate_hz=RATE_HZ):
     return figures, broken, logs
 
 
-def invented(merged, voter):
-    """Whether this voter changed the attitude that it repeated."""
-    samples = [sample for sample in merged if sample.voter == voter]
-    return any(now.attitude != before.attitude for before, now in zip(samples, samples[1:])
-               if now.level in HELD and before.level in HELD and now.identity[0] == before.identity[0])
+def invented(merged, voter, epoch):
+    """Whether this voter changed the attitude that it repeated in this epoch."""
+    samples = [sample for sample in merged if sample.voter == voter and sample.identity[0] == epoch]
+    return any(now.attitude != before.attitude for before, now in zip(samples, samples[1:]) if now.level in HELD and before.level in HELD)
 
 
 def bounds_broken(cell, figures, merged, since, rate_hz):
@@ -166,7 +165,7 @@ def bounds_broken(cell, figures, merged, since, rate_hz):
             yield "LOST was never said"
         if figures.claims:
             yield f"{figures.claims} frames of the new epoch claim to know the attitude"
-        if any(invented(merged, voter) for voter in (1, 2)):
+        if any(invented(merged, voter, since[0]) for voter in (1, 2)):
             yield "an attitude was invented while no frames came"
 
 

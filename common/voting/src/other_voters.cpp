@@ -51,7 +51,10 @@ std::optional<std::uint32_t> OtherVoter::steady_primary(std::uint64_t frames) co
 
 std::uint64_t OtherVoter::number_beside(Identity identity) const
 {
-    if (newest_.identity <= identity) return newest_.output_sequence + (newest_.identity == identity ? 0 : 1);
+    if (newest_.identity.epoch == identity.epoch && newest_.identity <= identity) {
+        return newest_.output_sequence + (identity.sequence - newest_.identity.sequence);  // it will have published the frames between
+    }
+    if (newest_.identity < identity) return newest_.output_sequence + 1;
     if (const VotedAttitude* same = at(identity)) return same->output_sequence;
     const std::uint64_t behind = newest_.identity.epoch == identity.epoch ? newest_.identity.sequence - identity.sequence : 0;
     return newest_.output_sequence - std::min(behind, newest_.output_sequence);

@@ -43,7 +43,7 @@ public:
     /// The primary lane's id that it named in each of its newest frames; none while that changes.
     std::optional<std::uint32_t> steady_primary(std::uint64_t frames) const;
 
-    /// The number that keeps in step with it: its own number of this frame, or the one after that of the frame before.
+    /// The number that keeps in step with it: its own number of this frame, or what that will be when it has published all frames up to it.
     std::uint64_t number_beside(Identity identity) const;
 
     /// It counts as alive until then. One that repeats its last attitude publishes less often.

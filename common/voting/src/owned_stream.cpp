@@ -45,7 +45,8 @@ void OwnedStream::start_over(std::int64_t now_ns)
 {
     right_ = Right::proving;
     good_frames_ = held_ = 0;
-    not_before_ns_ = now_ns + lease_ns_;
+    // After one lease this voter gives out at once what nobody else has: the others need time to find it there again before it writes.
+    not_before_ns_ = now_ns + lease_ns_ + good_frames_required_ * interval_ns_;
     ready_.clear();
 }
 

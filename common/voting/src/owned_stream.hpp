@@ -12,7 +12,7 @@ namespace quorient::voting {
 /// another it must see no frame twice and none that is older. Hence three rules:
 ///
 /// 1. A voter has the right to write only after a number of good frames. One that has never received a stronger voter first gives both
-///    `listen_s` to discover each other. An absence ends the right, and it returns after one lease at the earliest.
+///    `listen_s` to discover each other. An absence ends the right, and it returns after one lease and so many intervals at the earliest.
 /// 2. It begins with a frame that no voter has published yet, and early enough that no weaker one can have ceased to wait for it.
 /// 3. A frame is written in the order of strength: after the leader has published it, or an interval late where the leader does not.
 ///    One that falls behind the leader by half a lease passes frames over until it has caught up.

@@ -231,6 +231,17 @@ TEST(TwoVoters, number_an_older_frame_as_the_other_did)
     EXPECT_EQ(others.next_output_sequence({first_epoch, 305}, 0), 312U) << "no longer remembered: counted back";
 }
 
+/// What the other has published since is on its way: a smaller number would be a step back for readers.
+TEST(TwoVoters, number_a_frame_as_if_the_other_had_published_all_up_to_it)
+{
+    const VoterSettings settings = settings_of(3, {1, 2}, 1);
+    OtherVoters others(settings, Durations(settings));
+    ASSERT_TRUE(others.on_output(output_by(2, 100, 110), 0));
+    EXPECT_EQ(others.next_output_sequence({first_epoch, 104}, 50), 114U);
+    EXPECT_EQ(others.next_output_sequence({first_epoch, 104}, 120), 121U);
+    EXPECT_EQ(others.next_output_sequence({first_epoch + 1, 0}, 50), 111U);
+}
+
 /// A reader that has not found the stronger writer yet, or has just lost it, reads the weaker one.
 TEST(TwoVoters, write_a_frame_in_the_order_of_their_strength)
 {
