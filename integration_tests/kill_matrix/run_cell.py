@@ -13,7 +13,6 @@ from integration_tests.harness.streams import COASTING, HELD, LOST, SINGLE
 FAULT_S = 1.5
 FAULTY_AXIS = 1
 STOPPED_S = 2.0
-VOID_ALLOWED = 2  # attempts of a cell in which the stop found a voter within a write
 
 
 class Cell(NamedTuple):
@@ -181,20 +180,9 @@ def row(cell, figures, broken, attempts):
             figures.wrong_isolations, "–" if figures.frames_to_full is None else figures.frames_to_full, outcome)
 
 
-def found_within_write(cell, figures, since_frame):
-    """Whether the stop found the stronger voter within the DDS library's write. That write ends when the process goes on: one old sample, of the frame
-    that was due at the stop. No program can prevent it."""
-    if cell.act != "stop" or not cell.touches("voter-1") or figures is None or figures.disordered != 1:
-        return False
-    now, before = figures.steps_back[0]
-    return (now.voter, before.voter) == (1, 2) and abs(now.identity[1] - since_frame) <= 2
-
-
 def attempt(cell, attempts_allowed=2, level="none", rate_hz=RATE_HZ):
     """On a shared machine one attempt may get too little processor time: the second one counts, and the table says so."""
-    attempts = void = 0
-    while attempts < attempts_allowed:
-        attempts += 1
+    for attempts in range(1, attempts_allowed + 1):
         try:
             figures, broken, logs = run(cell, level, rate_hz)
         except NotInTime as problem:
@@ -202,9 +190,6 @@ def attempt(cell, attempts_allowed=2, level="none", rate_hz=RATE_HZ):
         if not broken:
             break
         print(f"{cell.name}: attempt {attempts}: {'; '.join(broken)}", file=sys.stderr, flush=True)
-        if void < VOID_ALLOWED and len(broken) == 1 and found_within_write(cell, figures, int(act_frame(rate_hz))):
-            print(f"{cell.name}: this attempt is void: the stop found the voter within a write", file=sys.stderr, flush=True)
-            attempts, void = attempts - 1, void + 1
     return figures, broken, logs, attempts
 
 

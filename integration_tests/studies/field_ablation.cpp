@@ -28,6 +28,7 @@ constexpr std::array variants{
     Variant{"smallest angle", &fdi::FieldRules::smallest_angle},
     Variant{"erratic", &fdi::FieldRules::erratic},
     Variant{"outside class", &fdi::FieldRules::outside_class},
+    Variant{"brief gains", &fdi::FieldRules::brief_gains},
     Variant{"saturation", &fdi::FieldRules::saturation},
 };
 

@@ -75,7 +75,7 @@ bool OwnedStream::may_write(const Waiting& waiting, const OtherVoters& others, s
         written_ = std::max(written_, others.reached());
         return false;
     }
-    if (is_behind(position.identity, others)) return false;
+    if (passes_over(position.identity, others)) return false;
     const bool forward =
         waiting.repeated ? position > written_ && position.identity >= others.reached().identity : position.identity > written_.identity;
     if (forward) written_ = position;
@@ -83,7 +83,7 @@ bool OwnedStream::may_write(const Waiting& waiting, const OtherVoters& others, s
 }
 
 /// A stronger voter has written this frame long ago. Should that one have ended since, readers would see a step back.
-bool OwnedStream::is_behind(Identity identity, const OtherVoters& others)
+bool OwnedStream::passes_over(Identity identity, const OtherVoters& others)
 {
     const Identity theirs = others.stronger_reached();
     const bool far = identity.epoch == theirs.epoch && identity.sequence + lag_frames_ < theirs.sequence;

@@ -54,7 +54,7 @@ private:
     };
 
     void consider_right(const OtherVoters& others, std::int64_t now_ns);
-    bool is_behind(Identity identity, const OtherVoters& others);
+    bool passes_over(Identity identity, const OtherVoters& others);
     bool must_hold(Identity identity, const OtherVoters& others, std::int64_t now_ns) const;
     bool may_write(const Waiting& waiting, const OtherVoters& others, std::int64_t now_ns);
 

@@ -16,21 +16,6 @@ constexpr std::uint64_t lost_from = 100;  ///< the first frame that arrives whil
 constexpr std::uint64_t end = 400;
 constexpr std::uint64_t queue = 64;  ///< samples that a reader of the lanes' attitudes keeps
 
-/// What another voter publishes.
-VotedAttitude output_of(std::uint32_t voter, std::uint64_t sequence)
-{
-    VotedAttitude output;
-    output.epoch = first_epoch;
-    output.sequence = sequence;
-    output.output_sequence = sequence + 1;
-    output.attitude = truth(sequence);
-    output.unit = 7;
-    output.voter = voter;
-    output.primary_lane = 1;
-    output.vouching_mask = 7;
-    return output;
-}
-
 /// The weaker of two voters; the stronger one is its script.
 struct Weaker {
     explicit Weaker(std::int64_t frame_interval) : interval_ns(frame_interval), scene(settings(frame_interval)) {}
@@ -51,7 +36,7 @@ struct Weaker {
 
     void stronger_publishes(std::uint64_t sequence, std::int64_t time)
     {
-        scene.at(time, output_of(1, sequence));
+        scene.at(time, output_by(1, sequence, sequence + 1));
     }
 
     /// @param away       frames that arrive while this voter does not run
@@ -147,7 +132,7 @@ struct Stronger {
         const std::int64_t time = Scene::time_of(sequence) + late_ns;
         for (std::size_t lane = 0; lane < 3; ++lane) scene.at(time, sample_of(lane, sequence));
         if (!weaker_publishes) return;
-        scene.at(time + ms / 2, output_of(2, sequence));
+        scene.at(time + ms / 2, output_by(2, sequence, sequence + 1));
     }
 
     Scene scene{settings_of(3, {1, 2}, 1)};

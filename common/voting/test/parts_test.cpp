@@ -4,6 +4,7 @@
 #include "continuity.hpp"
 #include "levels.hpp"
 #include "newcomers.hpp"
+#include "other_voters.hpp"
 #include "timeline.hpp"
 
 #include <gtest/gtest.h>
@@ -151,4 +152,27 @@ TEST(Continuity, estimates_the_rotation_where_no_frame_is_known_to_both)
     continuity.follow(output);
     const auto reset = continuity.next(moved(sample_of(2, 12), 0.02), nullptr);
     EXPECT_NEAR(angle_between(reset.rotation, turn(0.02)), 0, 1e-9);
+}
+
+/// A voter that is behind, or repeats an old frame, numbers it beside what the other gave it.
+TEST(OtherVoters, number_an_older_frame_as_the_other_did)
+{
+    const VoterSettings settings = settings_of(3, {1, 2}, 1);
+    OtherVoters others(settings, Durations(settings));
+    for (std::uint64_t sequence = 300; sequence < 400; ++sequence) ASSERT_TRUE(others.on_output(output_by(2, sequence, sequence + 7), 0));
+    EXPECT_EQ(others.next_output_sequence({first_epoch, 400}, 0), 407U);
+    EXPECT_EQ(others.next_output_sequence({first_epoch, 399}, 0), 406U);
+    EXPECT_EQ(others.next_output_sequence({first_epoch, 390}, 0), 397U);
+    EXPECT_EQ(others.next_output_sequence({first_epoch, 305}, 0), 312U) << "no longer remembered: counted back";
+}
+
+/// What the other has published since is on its way: a smaller number would be a step back for readers.
+TEST(OtherVoters, number_a_frame_as_if_the_other_had_published_all_up_to_it)
+{
+    const VoterSettings settings = settings_of(3, {1, 2}, 1);
+    OtherVoters others(settings, Durations(settings));
+    ASSERT_TRUE(others.on_output(output_by(2, 100, 110), 0));
+    EXPECT_EQ(others.next_output_sequence({first_epoch, 104}, 50), 114U);
+    EXPECT_EQ(others.next_output_sequence({first_epoch, 104}, 120), 121U);
+    EXPECT_EQ(others.next_output_sequence({first_epoch + 1, 0}, 50), 111U);
 }

@@ -87,6 +87,21 @@ inline AttitudeState leaving_out(AttitudeState sample, AxisMask axes, std::uint6
     return sample;
 }
 
+/// What another voter publishes.
+inline VotedAttitude output_by(std::uint32_t voter, std::uint64_t sequence, std::uint64_t output_sequence)
+{
+    VotedAttitude output;
+    output.epoch = first_epoch;
+    output.sequence = sequence;
+    output.output_sequence = output_sequence;
+    output.attitude = truth(sequence);
+    output.unit = 7;
+    output.voter = voter;
+    output.primary_lane = 1;
+    output.vouching_mask = 7;
+    return output;
+}
+
 inline FaultVerdict verdict_of(std::size_t lane, std::uint64_t sequence, VerdictState state = VerdictState::healthy, AxisMask axes = 0)
 {
     FaultVerdict verdict;

@@ -20,17 +20,6 @@ const VotedAttitude* output_of(const Scene& scene, std::uint64_t sequence)
     return nullptr;
 }
 
-VotedAttitude output_by(std::uint32_t voter, std::uint64_t sequence, std::uint64_t output_sequence)
-{
-    VotedAttitude output;
-    output.epoch = first_epoch;
-    output.sequence = sequence;
-    output.output_sequence = output_sequence;
-    output.unit = 7;
-    output.voter = voter;
-    return output;
-}
-
 auto lanes_apart = [](std::size_t lane, AttitudeState& sample) {
     sample = moved(sample, 3e-5 * static_cast<double>(lane));
     return true;
@@ -217,29 +206,6 @@ TEST(TwoVoters, let_a_starting_one_catch_up_with_the_other_before_it_writes)
     std::uint64_t sequence = 300;
     for (; sequence < 400; ++sequence) EXPECT_FALSE(writes(sequence, sequence + 10)) << sequence;
     EXPECT_TRUE(writes(sequence + 11, sequence + 10));
-}
-
-/// A voter that is behind, or repeats an old frame, numbers it beside what the other gave it.
-TEST(TwoVoters, number_an_older_frame_as_the_other_did)
-{
-    const VoterSettings settings = settings_of(3, {1, 2}, 1);
-    OtherVoters others(settings, Durations(settings));
-    for (std::uint64_t sequence = 300; sequence < 400; ++sequence) ASSERT_TRUE(others.on_output(output_by(2, sequence, sequence + 7), 0));
-    EXPECT_EQ(others.next_output_sequence({first_epoch, 400}, 0), 407U);
-    EXPECT_EQ(others.next_output_sequence({first_epoch, 399}, 0), 406U);
-    EXPECT_EQ(others.next_output_sequence({first_epoch, 390}, 0), 397U);
-    EXPECT_EQ(others.next_output_sequence({first_epoch, 305}, 0), 312U) << "no longer remembered: counted back";
-}
-
-/// What the other has published since is on its way: a smaller number would be a step back for readers.
-TEST(TwoVoters, number_a_frame_as_if_the_other_had_published_all_up_to_it)
-{
-    const VoterSettings settings = settings_of(3, {1, 2}, 1);
-    OtherVoters others(settings, Durations(settings));
-    ASSERT_TRUE(others.on_output(output_by(2, 100, 110), 0));
-    EXPECT_EQ(others.next_output_sequence({first_epoch, 104}, 50), 114U);
-    EXPECT_EQ(others.next_output_sequence({first_epoch, 104}, 120), 121U);
-    EXPECT_EQ(others.next_output_sequence({first_epoch + 1, 0}, 50), 111U);
 }
 
 /// A reader that has not found the stronger writer yet, or has just lost it, reads the weaker one.

@@ -200,6 +200,17 @@ TEST_F(CalibrateVerb, sets_nothing_aside_on_sound_flights_and_field_isolates_nob
     }
 }
 
+TEST_F(CalibrateVerb, says_of_a_level_that_it_silences_accumulating_only_where_it_does)
+{
+    const auto folder = data_dir() / "field";
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no recordings under " << data_dir();
+    const std::string silenced = run("calibrate " + (folder / "cats_drone_healthy.csv").string()).out;
+    EXPECT_THAT(silenced, HasSubstr("keeps the accumulating detector silent here"));
+    const std::string not_silenced = run("calibrate " + (folder / "cats_rocket_healthy_long.csv").string()).out;
+    EXPECT_THAT(not_silenced, HasSubstr("the largest that was tried"));
+    EXPECT_THAT(not_silenced, testing::Not(HasSubstr("keeps the accumulating detector silent")));
+}
+
 TEST_F(CalibrateVerb, explains_what_it_cannot_calibrate)
 {
     const Output moving = run("simulate random --layout orthogonal-3 --interval 0.01 --duration 30 --noise-rad 1e-5");

@@ -193,15 +193,15 @@ std::string axes_text(const Calibration& calibration)
     return text;
 }
 
-std::string motion_text(const Calibration& calibration)
+std::string motion_text(const Calibration& calibration, bool is_silent)
 {
     if (!calibration.motion) return fmt::format("\nnominal axes are kept: {}\n", calibration.axes_note);
     const auto& motion = *calibration.motion;
     std::string text = mounting_text(calibration.cluster.description);
     text += fmt::format("\naxes fitted: they disagree by {:.2f} deg/s rms in motion\n", calibration.axes_residual_rad_s / degree);
     if (calibration.cluster.motion_level > 0)
-        text += fmt::format("motion noise: {:.2f} times the usual of an array (so much keeps the accumulating detector silent here)\n",
-                            calibration.cluster.motion_level);
+        text += fmt::format("motion noise: {:.2f} times the usual of an array ({})\n", calibration.cluster.motion_level,
+                            is_silent ? "so much keeps the accumulating detector silent here" : "the largest that was tried: accumulating isolates an instrument still");
     if (const auto& gated = calibration.cluster.gated)
         text +=
             fmt::format("gated sums: {:.3f} ms along, {:.3f} ms across, axes {:.1e}, rate {:.1e} (all but the worst frames show so much)\n",
@@ -223,7 +223,8 @@ std::string calibration_text(const Calibration& calibration, const Searches& sea
 {
     return fmt::format("{}\n{} resting segments, {:.1f} s\n\n", recording::summary(statistics), calibration.rest.size(),
                        resting_s(calibration, samples)) +
-           axes_text(calibration) + outside_text(calibration) + motion_text(calibration) + searches_text(calibration, searches);
+           axes_text(calibration) + outside_text(calibration) + motion_text(calibration, !searches.silence || !searches.silence->at_limit) +
+           searches_text(calibration, searches);
 }
 
 std::vector<Chart> calibration_charts(const Calibration& calibration)
