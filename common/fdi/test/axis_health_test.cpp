@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
 #include <vector>
 
@@ -115,6 +116,77 @@ TEST_F(AxisHealthTest, leaves_a_resting_axis_in_peace_while_one_other_axis_is_wr
         broken |= health_->assess({.identity = {1, 1000 + i}, .interval_s = interval_s, .increment = z_, .valid = 0b111111});
     }
     EXPECT_EQ(broken, 0U);
+}
+
+TEST_F(AxisHealthTest, takes_no_isolated_axis_for_a_witness_against_one_that_rests)
+{
+    cluster_.sigma.setConstant(quantum_rad / 10);
+    const auto broken_with = [&](AxisMask isolated) {
+        health_.emplace(cluster_);
+        feed(500, wild, sound);
+        AxisMask broken = 0;
+        for (unsigned i = 0; i < 2000; ++i) {
+            z_.assign(6, 0.0);
+            for (const std::size_t wrong : {4U, 5U}) z_[wrong] = 1e-2 * std::sin(0.3 * i);
+            broken |= health_->assess({.identity = {1, 1000 + i}, .interval_s = interval_s, .increment = z_, .valid = 0b111111}, isolated);
+        }
+        return broken;
+    };
+    EXPECT_NE(broken_with(0), 0U) << "two that are wrong outvote the others";
+    EXPECT_EQ(broken_with(0b100000), 0U);
+}
+
+/// Two instruments of three axes: what the other one measures is all there is to compare with.
+class TwoInstruments : public ::testing::Test {
+protected:
+    TwoInstruments()
+    {
+        cluster_.interval_s = interval_s;
+    }
+
+    /// @param spoil  what the six axes give out for what they should [rad].
+    AxisMask feed(unsigned frames, double sigma, const std::function<Eigen::Vector3d(unsigned)>& increment,
+                  const std::function<void(std::vector<double>&)>& spoil)
+    {
+        AxisMask broken = 0;
+        for (unsigned i = 0; i < frames; ++i, ++frame_) {
+            const Eigen::Vector3d exact = increment(frame_);
+            for (std::size_t axis = 0; axis < 6; ++axis)
+                z_[axis] = std::round((exact(static_cast<Eigen::Index>(axis % 3)) + sigma * normal_(random_)) / quantum_rad) * quantum_rad;
+            spoil(z_);
+            broken |= health_->assess({.identity = {1, frame_}, .interval_s = interval_s, .increment = z_, .valid = 0b111111});
+        }
+        return broken;
+    }
+
+    static Eigen::Vector3d turning(unsigned frame)
+    {
+        return 0.02 * Eigen::Vector3d(std::sin(0.2 * frame), std::cos(0.17 * frame), std::sin(0.23 * frame + 1));
+    }
+    static void nothing(std::vector<double>&) {}
+
+    geometry::SensorCluster cluster_ = geometry::layout("triads-2").value();
+    std::optional<AxisHealth> health_;
+    std::vector<double> z_ = std::vector<double>(6);
+    unsigned frame_ = 0;
+    std::mt19937_64 random_{12};
+    std::normal_distribution<double> normal_;
+};
+
+TEST_F(TwoInstruments, a_noisy_axis_that_repeats_itself_is_stuck)
+{
+    health_.emplace(cluster_);
+    EXPECT_EQ(feed(2000, 4 * quantum_rad, turning, nothing), 0U);
+    const double stuck = z_[2];
+    EXPECT_EQ(feed(20, 4 * quantum_rad, turning, [&](std::vector<double>& z) { z[2] = stuck; }), 0b100U);
+}
+
+TEST_F(TwoInstruments, a_coarse_axis_that_rests_is_not_stuck_because_the_other_instrument_is_wrong)
+{
+    health_.emplace(cluster_);
+    feed(2000, quantum_rad / 10, turning, nothing);
+    const auto about_y = [](unsigned frame) { return Eigen::Vector3d(0, 0.02 * std::sin(0.2 * frame), 0); };
+    EXPECT_EQ(feed(2000, quantum_rad / 10, about_y, [&](std::vector<double>& z) { z[3] = z[5] = 0.01 * std::sin(0.3 * frame_); }), 0U);
 }
 
 TEST_F(AxisHealthTest, tells_an_all_zero_axis)

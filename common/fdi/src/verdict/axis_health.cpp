@@ -20,6 +20,8 @@ constexpr double least_repeated_s = 0.03;
 constexpr double moved_quanta = 5;
 constexpr double moved_sigmas = 10;
 constexpr double least_motion = 1e-7;  ///< rad/s; m/s^2: more than rounding
+/// With noise of so many quanta (against the others) a sound axis repeats a value four times in less than one of 2000 frames.
+constexpr double rarely_repeating_quanta = 3;
 
 /// An increment is a rate times an interval: their quotient is the rate again up to rounding.
 constexpr double rounding = 1e-12;
@@ -47,7 +49,7 @@ void AxisHealth::reset()
     fault_.fill(AxisFault::none);
 }
 
-AxisMask AxisHealth::assess(const Measurement& measurement)
+AxisMask AxisHealth::assess(const Measurement& measurement, AxisMask isolated)
 {
     if (measurement.identity.sequence != sequence_ + 1) run_.fill({});
     sequence_ = measurement.identity.sequence;
@@ -56,7 +58,8 @@ AxisMask AxisHealth::assess(const Measurement& measurement)
         if (present(measurement, axis)) here |= axis_bit(axis);
         count_absence(axis, has_axis(here, axis));
     }
-    if (measurement.interval_s > 0) others_.update(measurement, here & ~broken_);  // what was just broken does not count against others
+    trusted_ = here & ~broken_ & ~isolated;  // what was just broken does not count against others
+    if (measurement.interval_s > 0) others_.update(measurement, trusted_);
     broken_ = 0;
     for (std::size_t axis = 0; axis < cluster_.size(); ++axis) {
         fault_[axis] = AxisFault::none;
@@ -99,7 +102,7 @@ void AxisHealth::repeat(const Measurement& measurement, std::size_t axis)
     run.independent = run.independent && others.independent;
     for (std::size_t other = 0; other < cluster_.size() && !run.independent; ++other) {
         const double motion = std::abs(measurement.increment[other] / measurement.interval_s - run.begin[other]);
-        if (present(measurement, other) && motion > visible_motion(other)) run.moved |= axis_bit(other);
+        if (has_axis(trusted_, other) && motion > visible_motion(other)) run.moved |= axis_bit(other);
     }
     run.lowest_high = run.compared ? std::min(run.lowest_high, others.high) : others.high;
     run.highest_low = run.compared ? std::max(run.highest_low, others.low) : others.low;
@@ -136,22 +139,33 @@ bool AxisHealth::is_stuck(std::size_t axis) const
 {
     const Run& run = run_[axis];
     if (run.repeats < least_repeats || run.seconds < least_repeated_s || !run.compared) return false;
-    if (!run.independent && std::popcount(run.moved) < 2) return false;
+    if (!run.independent && (std::popcount(run.moved) < 2 || !rarely_repeats(axis))) return false;
     return run.highest_low - run.lowest_high > visible_motion(axis);
+}
+
+/// Noise that moves an axis over several of its steps lets no value stand.
+bool AxisHealth::rarely_repeats(std::size_t axis) const
+{
+    const Habit& habit = habit_[axis];
+    return habit.frames >= habit_frames && std::sqrt(habit.variance) >= rarely_repeating_quanta * quantum(axis);
+}
+
+/// [rad/s; m/s^2]
+double AxisHealth::quantum(std::size_t axis) const
+{
+    const double stated = cluster_.interval_s > 0 ? cluster_.quantum(static_cast<Eigen::Index>(axis)) / cluster_.interval_s : 0;
+    return stated > 0 ? stated : habit_[axis].quantum;
 }
 
 /// Infinite until the axis's noise is known.
 double AxisHealth::visible_motion(std::size_t axis) const
 {
     const Habit& habit = habit_[axis];
-    const auto i = static_cast<Eigen::Index>(axis);
-    const double stated_sigma = cluster_.sigma(i) / cluster_.interval_s;
-    const double stated_quantum = cluster_.quantum(i) / cluster_.interval_s;
+    const double stated_sigma = cluster_.sigma(static_cast<Eigen::Index>(axis)) / cluster_.interval_s;
     const bool known = cluster_.interval_s > 0 && (stated_sigma > 0 || habit.frames >= habit_frames);
     if (!known) return std::numeric_limits<double>::infinity();
-    const double quantum = stated_quantum > 0 ? stated_quantum : habit.quantum;
     const double sigma = std::max(stated_sigma, habit.frames >= habit_frames ? std::sqrt(habit.variance) : 0);
-    return std::max({moved_quanta * quantum, moved_sigmas * sigma, least_motion});
+    return std::max({moved_quanta * quantum(axis), moved_sigmas * sigma, least_motion});
 }
 
 bool AxisHealth::is_near_range(const Measurement& measurement, std::size_t axis) const

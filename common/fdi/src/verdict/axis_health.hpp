@@ -21,10 +21,11 @@ enum class AxisFault : std::uint8_t {
 /// Tests of single axes by their own values: a stuck or railed axis need not wait for parity.
 ///
 /// Stuck: five equal values over 0.03 s or more, while the others moved by more than max(5 quanta, 10 sigma), whichever one of them is left out
-/// (OthersView). Where too few axes are left for that, as on four, at least two others must have moved by themselves: one that moves alone is faulty.
-/// Runs do not reach over lost frames. At rest a sound axis may repeat itself for ever. sigma is the larger of the stated one and what the axis has shown against the
-/// others; the quantum is the stated one, or else the least step that the axis has made. Values within 2.5 % of the range are not asked: beyond its range
-/// a sound axis repeats its limit.
+/// (OthersView). Where too few axes are left for that, as on four, one of the others may be the faulty one, and this axis may just have turned round.
+/// There it is stuck only if at least two others moved and its noise is of three quanta or more, so that it hardly ever repeats itself. Else the
+/// method has to find it. Isolated axes do not count as others. Runs do not reach over lost frames. At rest a sound axis may repeat itself for ever.
+/// sigma is the larger of the stated one and what the axis has shown against the others; the quantum is the stated one, or else the least step that
+/// the axis has made. Values within 2.5 % of the range are not asked: beyond its range a sound axis repeats its limit.
 ///
 /// An axis without data is no broken one: it is left out while it has none, and `absent` says so.
 ///
@@ -34,8 +35,9 @@ class AxisHealth {
 public:
     explicit AxisHealth(const geometry::SensorCluster& cluster);
 
+    /// @param isolated  axes that are no witnesses against the others.
     /// @returns the axes broken in this frame (confirmation is the state machine's).
-    AxisMask assess(const Measurement& measurement);
+    AxisMask assess(const Measurement& measurement, AxisMask isolated = 0);
 
     /// What the newest frame said of each axis.
     AxisFault fault(std::size_t axis) const { return fault_[axis]; }
@@ -69,6 +71,8 @@ private:
 
     AxisFault judge(const Measurement& measurement, std::size_t axis) const;
     bool is_stuck(std::size_t axis) const;
+    bool rarely_repeats(std::size_t axis) const;
+    double quantum(std::size_t axis) const;
     double visible_motion(std::size_t axis) const;
     bool is_near_range(const Measurement& measurement, std::size_t axis) const;
     bool is_railed(const Measurement& measurement, std::size_t axis) const;
@@ -80,6 +84,7 @@ private:
     geometry::SensorCluster cluster_;
     OthersView others_;
     AxisMask broken_ = 0;  ///< in the newest frame
+    AxisMask trusted_ = 0;  ///< witnesses in the newest frame
     std::uint64_t sequence_ = 0;  ///< of the newest frame
     AxisMask absent_ = 0;
     std::array<std::uint32_t, max_axes> missing_{};  ///< bit k = without data k frames ago

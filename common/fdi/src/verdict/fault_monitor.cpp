@@ -93,7 +93,7 @@ const FaultVerdict& FaultMonitor::assess(const SensorFrame& frame)
     if (const AxisMask returning = std::exchange(returning_, 0); returning != 0) readmit(returning);
     const Measurement measurement = measurement_of(frame);
     if (watch_->readmission) readmit(watch_->readmission->watch(measurement, watch_->machine.isolated(), all_ & ~watch_->machine.isolated()));
-    const AxisMask broken = watch_->health ? watch_->health->assess(measurement) : 0;
+    const AxisMask broken = watch_->health ? watch_->health->assess(measurement, watch_->machine.isolated()) : 0;
     Measurement sound = measurement;
     sound.valid &= ~broken;
     detector_->assess(sound, assessment_);
