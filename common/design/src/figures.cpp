@@ -265,7 +265,8 @@ double shortfall(const Figures& figures, const Brief& brief)
     if (figures.minimum_angle_rad < brief.minimum_angle_rad - close) missing += brief.minimum_angle_rad - figures.minimum_angle_rad;
     if (figures.detectable < brief.detectable) missing += brief.detectable - figures.detectable;
     if (figures.isolable < brief.isolable) missing += brief.isolable - figures.isolable;
-    if (brief.failures && !figures.worst_after.empty() && !std::isfinite(figures.worst_after.back().trace)) missing += 1e6;
+    const bool measures = std::isfinite(figures.trace) && (!brief.failures || figures.worst_after.empty() || std::isfinite(figures.worst_after.back().trace));
+    if (!measures) missing += 1e6;
     return missing;
 }
 

@@ -172,7 +172,7 @@ VectorXd minimise_once(const MinimaxProblem& whole, const VectorXd& start)
 
 VectorXd minimise(const MinimaxProblem& problem, const VectorXd& start)
 {
-    if (start.size() == 0) return start;
+    if (start.size() == 0 || count(problem.minimised, start) == 0) return start;
     VectorXd best = start;
     for (int repetition = 0; repetition < most_repetitions; ++repetition) {
         const VectorXd next = minimise_once(problem, best);

@@ -235,7 +235,7 @@ Checked check_kind(const ConeMounting& cone, const Brief& brief)
         return problem("a cone of another half-angle than 54.7356 deg: three right-angled axes lie on no other cone around one line");
     if (brief.axes_each == 2 && *cone.half_angle_rad < pi / 4 - 1e-9)
         return problem("a cone of less than 45 deg: two right-angled axes do not lie on it");
-    if (brief.axes_each == 1 && brief.kept.rows() == 0 && (std::sin(*cone.half_angle_rad) < 1e-3 || std::cos(*cone.half_angle_rad) < 1e-3))
+    if (brief.axes_each < 3 && brief.kept.rows() == 0 && (std::sin(*cone.half_angle_rad) < 1e-3 || std::cos(*cone.half_angle_rad) < 1e-3))
         return problem("a cone of 0 or 90 deg: all its axes lie on one line or in one plane and measure no rotation about the rest");
     return {};
 }

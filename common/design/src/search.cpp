@@ -199,7 +199,10 @@ private:
         }
         auto cluster = geometry::make_cluster(axes, brief_.instrument_of_axes());
         if (cluster) design.cluster = std::move(*cluster);
-        else design.cluster.axes = axes;  // does not span space: only as the nearest one to an unmet limit
+        else {  // does not span space: only as the nearest one to what was asked for
+            design.cluster.axes = axes;
+            design.cluster.instrument = brief_.instrument_of_axes();
+        }
         design.cluster.sigma = brief_.noise_of_axes();
         Yardstick complete = yardstick_;
         complete.fault_sizes = true;

@@ -88,6 +88,12 @@ void append_compared(std::string& text, const Compared& one, bool mission)
     text += '\n';
 }
 
+/// Two digits, and no powers of ten.
+std::string significant(double value)
+{
+    return value < 100 ? fmt::format("{:.2g}", value) : fmt::format("{:.0f}", value);
+}
+
 std::string percent(double ratio)
 {
     return fmt::format("{:.0f} %", 100 * (ratio - 1));
@@ -180,8 +186,9 @@ void append_bounds(std::string& text, const Figures& figures, const design::Boun
     const auto row = [&](const std::string& name, double own, double bound, bool more) {
         if (!std::isfinite(own) || !std::isfinite(bound)) return;
         const double missing = more ? bound / own - 1 : own / bound - 1;
-        fmt::format_to(std::back_inserter(text), "  {:<36}{:>12.6f}{:>12.6f}   {}\n", name, own, bound,
-                       missing < 1e-9 ? "met: no array does better" : fmt::format("{:.2g} % from a bound that may not be reachable", 100 * missing));
+        const std::string distance = !std::isfinite(missing) ? "nothing of a bound that may not be reachable"
+                                                             : fmt::format("{} % from a bound that may not be reachable", significant(100 * missing));
+        fmt::format_to(std::back_inserter(text), "  {:<36}{:>12.6f}{:>12.6f}   {}\n", name, own, bound, missing < 1e-9 ? "met: no array does better" : distance);
     };
     row("trace with all axes", figures.trace, bounds.trace, false);
     for (std::size_t k = 0; k < std::min(figures.worst_after.size(), bounds.worst_after.size()); ++k)

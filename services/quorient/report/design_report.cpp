@@ -236,7 +236,8 @@ std::string removals_text(const geometry::SensorCluster& cluster, const std::vec
         const std::size_t owner = instruments ? removal.unit : cluster.instrument[removal.unit];
         fmt::format_to(std::back_inserter(text), "{:<14}", fmt::format("{} ({})", removal.unit, cluster.instrument_name[owner]));
         text += cell(figures.trace) + cell(figures.condition) + "    " + cell(figures.worst_after.empty() ? undefined : figures.worst_after.front().trace);
-        fmt::format_to(std::back_inserter(text), "{:>12.6f}{:>12.6f}\n", figures.f_d1, figures.f_d2);
+        for (const double figure : {figures.f_d1, figures.f_d2}) text += fmt::format("{:>12}", std::isfinite(figure) ? fmt::format("{:.6f}", figure) : "-");
+        text += '\n';
     }
     return text;
 }

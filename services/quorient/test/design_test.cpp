@@ -109,6 +109,29 @@ TEST(DesignVerb, refuses_what_no_array_can_do_and_names_the_bound)
     expect_refused("--axes 6 --objective best", "best");
     expect_refused("--axes 6 --mounting nowhere.yaml", "no mounting and no file");
     expect_refused("--axes 6 --triads 2", "--triads");
+    expect_refused("--axes 6 --objective mounted_trace", "needs --mounting-error");
+}
+
+TEST(DesignVerb, gives_a_single_instrument_whatever_the_objective)
+{
+    for (const char* objective : {"trace", "minimum_angle", "worst_trace", "F_d1", "F_d2", "condition", "isolated_axis"}) {
+        const Answer one = run(std::string("design --triads 1 --json --objective ") + objective);
+        EXPECT_EQ(one.exit_code, 0) << objective << one.error;
+        EXPECT_NEAR(one.object()["designs"][0]["trace"], 3, 1e-9) << objective;
+    }
+}
+
+TEST_F(Design, never_names_an_array_that_measures_nothing_outside_a_plane)
+{
+    const std::string flat = written("flat.yaml", "kind: wedges\nangles_deg: [0]\n");  // pairs with both axes in the plate
+    const Answer none = run("design --pairs 2 --mounting " + flat);
+    EXPECT_EQ(none.exit_code, 1);
+    EXPECT_THAT(none.error, HasSubstr("lie in one plane"));
+    EXPECT_THAT(run("design --pairs 2 --json --mounting " + flat).object()["designs"], testing::IsEmpty());
+    EXPECT_EQ(run("design --triads 2 --starts 2 --mounting " + flat).exit_code, 0);
+    const Answer cone = run("design --pairs 5 --mounting " + written("cone.yaml", "kind: cone\nhalf_angle_deg: 90\n"));
+    EXPECT_EQ(cone.exit_code, 2);
+    EXPECT_THAT(cone.error, HasSubstr("in one plane"));
 }
 
 TEST_F(Design, reports_every_mistake_of_a_brief_with_its_place)
@@ -165,6 +188,7 @@ TEST(DesignVerb, says_which_axis_may_go_at_least_cost)
     const auto instruments = run("design --keep triads-8 --remove --fault instrument --json").object();
     EXPECT_EQ(instruments["removals"].size(), 8U);
     EXPECT_EQ(run("design --keep orthogonal-3 --remove").exit_code, 2);
+    EXPECT_THAT(run("design --keep cone-4 --remove").out, testing::Not(HasSubstr("nan")));
 }
 
 TEST(DesignVerb, adds_axes_to_an_array_and_keeps_those_it_has)
@@ -181,6 +205,8 @@ TEST(DesignVerb, explains_in_words_what_the_winner_gains_and_what_two_failures_l
                                   HasSubstr("WHAT TWO FAILURES LEAVE"), HasSubstr("met: no array does better")));
     EXPECT_EQ(run("design --axes 4 --explain").exit_code, 0);
     EXPECT_EQ(run("design --axes 3 --explain").exit_code, 0);
+    EXPECT_THAT(run("design --triads 2 --explain").out, HasSubstr("122 % from a bound"));  // F_d2: 2.25 of 5
+    EXPECT_THAT(run("design --axes 7 --mounting right-angles --starts 2 --explain").out, testing::Not(HasSubstr("inf ")));  // two axes are parallel
 }
 
 TEST(DesignVerb, says_so_where_parity_cannot_name_the_failures)

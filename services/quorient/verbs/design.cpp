@@ -137,6 +137,13 @@ void apply(const DesignOptions& options, BriefFile& input)
     input.place.erase("mounting");
 }
 
+/// The objectives that judge by something which has to be given.
+void check_objective(const DesignOptions& options, const design::Brief& brief)
+{
+    if (objective_of(options.objective) == design::Objective::mounted_trace && brief.mounting_error_rad == 0)
+        fail("--objective mounted_trace needs --mounting-error: how far instruments may be tilted");
+}
+
 /// A mission where one is asked for; the survival cannot be compared without.
 void apply_mission(const DesignOptions& options, design::Brief& brief)
 {
@@ -157,6 +164,7 @@ BriefFile read_brief(const DesignOptions& options)
     }
     apply(options, input);
     apply_mission(options, input.brief);
+    check_objective(options, input.brief);
     return input;
 }
 
@@ -273,7 +281,9 @@ std::string answer(const DesignOptions& options, const design::Brief& brief, con
 void report_unmet(const design::Brief& brief, const design::SearchResult& result)
 {
     if (result.designs.empty()) {
-        if (result.searched == design::Searched::wholly) fmt::print(stderr, "none of all {} choices of places meets all demands\n", result.tried);
+        const bool flat = !result.nearest.empty() && !std::isfinite(result.nearest.front().figures.trace);
+        if (flat) fmt::print(stderr, "no array found measures all rotations: in every one that was tried the axes lie in one plane\n");
+        else if (result.searched == design::Searched::wholly) fmt::print(stderr, "none of all {} choices of places meets all demands\n", result.tried);
         else fmt::print(stderr, "no array found meets all demands; no bound is known that forbids it\n");
         throw Exit{ExitCode::not_as_asked};
     }
