@@ -35,7 +35,7 @@ class LiveVerbs(ProcessTest):
         self.assertEqual({sample["voter"] for sample in self.echo("voted", 70)[-5:]}, {1})
 
     def test_inject_breaks_an_axis_and_readmit_trusts_it_again(self):
-        injected = self.run_program("quorient", "inject", "axis=2,kind=bias,value=0.05,start=0", "--domain", self.domain)
+        injected = self.run_program("quorient", "inject", "axis=G3,kind=bias,value=0.05,start=0", "--domain", self.domain)
         self.assertEqual(injected.returncode, 0, injected.stdout + injected.stderr)
         isolating = lambda: {verdict["detector"] for verdict in self.echo("verdict", 24) if verdict["isolated_mask"] == 0b100}  # noqa: E731
         self.eventually(lambda: len(isolating()) >= 2, "axis 2 isolated by two detectors")
@@ -45,11 +45,20 @@ class LiveVerbs(ProcessTest):
         for detector in named:
             self.assertIn(f"{detector}: does not readmit what still disagrees with the others: G3", refused.stdout, refused.stderr)
         self.assertEqual(self.run_program("quorient", "inject", "--clear", "--domain", self.domain).returncode, 0)
-        readmitted = self.run_program("quorient", "readmit", "--axis", 2, "--domain", self.domain)
+        readmitted = self.run_program("quorient", "readmit", "--axis", "G3", "--domain", self.domain)
         for detector in named:
             self.assertIn(f"{detector}: readmits G3", readmitted.stdout, readmitted.stderr)
         self.assertEqual(readmitted.returncode, 1 if "fdi-c: has not isolated" in readmitted.stdout else 0)
         self.eventually(lambda: self.echo("voter_output", 1)[0]["isolated_mask"] == 0, "axis 2 trusted again")
+
+    def test_orders_for_axes_that_there_are_not_name_those_that_there_are(self):
+        for order in (("inject", "axis=G9,kind=zero"), ("inject", "instrument=G9,kind=zero"), ("readmit", "--axis", "G9")):
+            refused = self.run_program("quorient", *order, "--domain", self.domain)
+            self.assertEqual(refused.returncode, 2, order)
+            self.assertRegex(refused.stderr, "'?G9'?.*G1, G2, G3, G4", order)
+        typo = self.run_program("quorient", "inject", "axis=G2,kind=tired", "--domain", self.domain)
+        self.assertEqual(typo.returncode, 2)
+        self.assertIn("fault 'axis=G2,kind=tired': unknown kind 'tired'", typo.stderr)
 
     def test_readmit_of_a_healthy_axis_is_refused(self):
         self.assertEqual(self.run_program("quorient", "readmit", "--axis", 0, "--domain", self.domain).returncode, 1)

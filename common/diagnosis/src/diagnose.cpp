@@ -237,8 +237,10 @@ private:
                 report_.remarks.push_back(fmt::format("{}: {:.1f} samples a second from {:.1f} s on, usually {:.1f}", name, change.rate_hz, change.from_s,
                                                       instrument.figures.rate_hz()));
             if (!instrument.clock.own_clock) continue;
-            report_.remarks.push_back(fmt::format("{}: stamps come up to {:.0f} ms late ({:.1f} ms for most); its samples were placed on its own clock, {} lost ones left out", name,
-                                                  instrument.clock.late_most_s * 1e3, instrument.clock.late_median_s * 1e3, instrument.clock.lost));
+            const std::uint64_t lost = instrument.clock.lost;
+            report_.remarks.push_back(fmt::format("{}: stamps come up to {:.0f} ms late ({:.1f} ms for most); its samples were placed on its own clock{}", name,
+                                                  instrument.clock.late_most_s * 1e3, instrument.clock.late_median_s * 1e3,
+                                                  lost == 0 ? "" : fmt::format(", with room left for {}", counted(lost, "lost one"))));
         }
     }
 

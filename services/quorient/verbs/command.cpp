@@ -1,6 +1,9 @@
 // The verbs that give orders: inject, readmit and reset.
 
+#include "named_axes.hpp"
 #include "order.hpp"
+#include "quorient/bus/topics.hpp"
+#include "quorient/geometry/sensor_cluster.hpp"
 #include "quorient/messages/codes.hpp"
 #include "quorient/messages/meaning.hpp"
 #include "quorient/runtime/signals.hpp"
@@ -19,7 +22,7 @@ namespace {
 struct CommandOptions {
     BusOptions bus;
     std::string fault;
-    std::vector<std::size_t> axes;
+    std::vector<std::string> axes;
     std::vector<double> attitude;
     bool clear = false;
 };
@@ -36,6 +39,69 @@ int send(const CommandOptions& options, const FaultCommand& command)
     return loop.run();
 }
 
+/// What the unit's sensor publisher says of its axes. Ends the verb where it says nothing.
+ClusterDescription description_of(const BusOptions& options)
+{
+    const auto bus = options.open("quorient-command");
+    const runtime::SystemClock clock;
+    runtime::EventLoop loop{*bus, clock, runtime::termination_requested()};
+    ClusterDescription found;
+    loop.on(bus->subscribe(bus::topics::cluster), [&](const ClusterDescription& description) {
+        if (description.unit != options.unit) return;
+        found = description;
+        loop.quit(ExitCode::done);
+    });
+    loop.timer([&] { loop.quit(ExitCode::not_as_asked); }).set(clock.steady_ns() + static_cast<std::int64_t>(Order::patience_s * 1e9));
+    if (loop.run() == ExitCode::done && found.axis_count > 0) return found;
+    fmt::print(stderr, "the names of the axes are not known: no description of unit {} came in domain {} on '{}' within {} s\n", options.unit,
+               options.joined_domain(), options.interface, Order::patience_s);
+    throw Exit{ExitCode::not_as_asked};
+}
+
+/// The axes by numbers alone, or by names, which the running unit knows.
+AxisMask chosen_axes(const BusOptions& options, const std::vector<std::string>& words)
+{
+    const bool numbers = std::ranges::all_of(words, is_axis_number);
+    const auto axes = named_axes(words, numbers ? ClusterDescription{} : description_of(options));
+    if (!axes) fail(axes.error());
+    return *axes;
+}
+
+simulation::FaultSpec parsed(const std::string& text, const std::string& as_typed)
+{
+    auto fault = simulation::parse_fault(text);
+    if (fault) return std::move(*fault);
+    std::string problem = fault.error();
+    if (const auto place = problem.find(text); place != std::string::npos) problem.replace(place, text.size(), as_typed);
+    fail(problem);
+}
+
+/// axis= takes names too: all else is looked at first, so that no mistake waits for the unit.
+simulation::FaultSpec fault_with_axes(const CommandOptions& options)
+{
+    const std::string& text = options.fault;
+    const std::string key = "axis=";
+    const auto place = text.starts_with(key) ? 0 : text.find(',' + key);
+    if (place == std::string::npos) return parsed(text, text);
+    const auto begin = text.find('=', place) + 1;
+    const auto end = std::min(text.find(',', begin), text.size());
+    const auto words = axis_words(text.substr(begin, end - begin));
+    if (std::ranges::all_of(words, [](const std::string& word) { return word.empty() || is_axis_number(word) || word.starts_with('-'); })) return parsed(text, text);
+    auto fault = parsed(std::string(text).replace(begin, end - begin, "0"), text);
+    fault.axes = chosen_axes(options.bus, words);
+    return fault;
+}
+
+/// The axes of an instrument, which the running unit knows.
+simulation::FaultSpec fault_of_instrument(const CommandOptions& options, const simulation::FaultSpec& fault)
+{
+    const auto cluster = geometry::make_cluster(description_of(options.bus));
+    if (!cluster) fail(cluster.error());
+    const auto resolved = simulation::resolve(fault, *cluster);
+    if (!resolved) fail(resolved.error());
+    return *resolved;
+}
+
 FaultCommand inject_command(const CommandOptions& options)
 {
     FaultCommand command;
@@ -44,12 +110,8 @@ FaultCommand inject_command(const CommandOptions& options)
         return command;
     }
     if (options.fault.empty()) fail("nothing to do: give a fault, as in axis=1,kind=scale,value=0.8,start=0,end=10, or --clear");
-    const auto fault = simulation::parse_fault(options.fault);
-    if (!fault || fault->axes == 0) {
-        fmt::print(stderr, "{}\n", fault ? "a live fault names its axis: axis=1,…" : fault.error());
-        throw Exit{2};
-    }
-    return simulation::to_command(*fault);
+    const auto fault = fault_with_axes(options);
+    return simulation::to_command(fault.instrument.empty() ? fault : fault_of_instrument(options, fault));
 }
 
 void finish(int exit_code)
@@ -64,9 +126,9 @@ void add_inject(Program& program)
     auto verb = program.verb("inject", "Break an axis of a running unit; times count from now");
     auto options = std::make_shared<CommandOptions>();
     options->bus.add_to(verb, "operator");
-    const auto fault = verb.option("fault", options->fault, "axis=1,kind=scale,value=0.8,start=0,end=10");
+    const auto fault = verb.option("fault", options->fault, "axis=1,kind=scale,value=0.8,start=0,end=10; an axis's name will do, as in axis=G2");
     verb.flag("--clear", options->clear, "Take all faults back instead").in_place_of({fault});
-    verb.footer("Example:\n  quorient inject axis=1,kind=bias,value=0.1,start=0");
+    verb.footer("Examples:\n  quorient inject axis=1,kind=bias,value=0.1,start=0\n  quorient inject 'axis=IMU3 y,kind=scale,value=0.8'\n  quorient inject instrument=IMU3,kind=zero");
     verb.not_as_asked_if("a service refused the order, or did not answer");
     verb.run([options] { finish(send(*options, inject_command(*options))); });
 }
@@ -76,15 +138,18 @@ void add_readmit(Program& program)
     auto verb = program.verb("readmit", "Trust an isolated axis again");
     auto options = std::make_shared<CommandOptions>();
     options->bus.add_to(verb, "operator");
-    verb.numbers("--axis", options->axes, 0, "0-based; repeatable").required().within({.lowest = 0, .highest = max_axes - 1});
+    verb.option("--axis", options->axes, "0-based number, or name: 1, G2, 'IMU3 y', IMU3 (all its axes); several as in 0,2 or repeated").required();
     verb.footer(
         "Refused while the other axes still contradict it, where a detector could not name it again (four axes; a vessel's channels).\n"
-        "Example:\n  quorient readmit --axis 1");
+        "Example:\n  quorient readmit --axis G2");
     verb.not_as_asked_if("a service refused the order, or did not answer");
     verb.run([options] {
         FaultCommand command;
         command.action = octet(CommandAction::readmit);
-        for (const auto axis : options->axes) command.axes |= axis_bit(axis);
+        std::vector<std::string> words;
+        for (const std::string& some : options->axes)
+            for (std::string& word : axis_words(some)) words.push_back(std::move(word));
+        command.axes = chosen_axes(options->bus, words);
         finish(send(*options, command));
     });
 }
