@@ -6,11 +6,14 @@ namespace {
 /// A voter that has received one of the first frames of an epoch was there before any other had published much.
 constexpr std::uint64_t first_frames = 20;
 
+/// By so much the owner goes on before the others.
+constexpr std::int64_t owner_first_intervals = 4;
+
 }  // namespace
 
-Listening::Delay Listening::delay(std::int64_t away_ns, std::int64_t mute_ns, std::int64_t promised_ns, bool others_exist,
-                                  std::int64_t now_ns)
+Listening::Delay Listening::delay(std::int64_t away_ns, std::int64_t mute_ns, std::int64_t promised_ns, Part part, std::int64_t now_ns)
 {
+    const bool others_exist = part != Part::only_one;
     // The others' last sign of this voter is up to an interval older, and what they publish is on its way for up to another one.
     const std::int64_t replaceable_ns = std::max(durations_.lease_ns / 2, durations_.lease_ns - 2 * durations_.interval_ns);
     const bool late = now_ns > promised_ns + durations_.interval_ns / 2;
@@ -18,8 +21,10 @@ Listening::Delay Listening::delay(std::int64_t away_ns, std::int64_t mute_ns, st
     if (!late && !absent) return Delay::none;
     queues_read_ns_ = now_ns + durations_.interval_ns / 2;
     if (!absent && (!others_exist || away_ns <= durations_.lease_ns / 2)) return Delay::none;
-    // After an absence the queues are long, and a busy machine takes its time to read them.
-    until_ns_ = std::max(until_ns_, absent && others_exist ? now_ns + durations_.lease_ns : queues_read_ns_);
+    // After an absence the queues are long, and a busy machine takes its time to read them. Where the whole machine stood still, the owner
+    // goes on first.
+    const std::int64_t after_owner_ns = part == Part::owner ? 0 : std::min(durations_.lease_ns / 2, owner_first_intervals * durations_.interval_ns);
+    until_ns_ = std::max(until_ns_, absent && others_exist ? now_ns + durations_.lease_ns + after_owner_ns : queues_read_ns_);
     return absent ? Delay::absence : Delay::pause;
 }
 

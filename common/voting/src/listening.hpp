@@ -25,6 +25,13 @@ public:
         absence,  ///< Another voter may have taken over: the same, and the right to write `voted` is lost.
     };
 
+    /// What this voter was among the voters before the delay.
+    enum class Part {
+        only_one,  ///< There are no others.
+        owner,     ///< It wrote `voted`.
+        standby,   ///< Another one did, or nobody.
+    };
+
     explicit Listening(const Durations& durations) : durations_(durations) {}
 
     void start(std::int64_t now_ns) { until_ns_ = now_ns + durations_.lease_ns; }
@@ -32,7 +39,7 @@ public:
     /// Time went on. @param away_ns      since the last call
     /// @param mute_ns      since this voter's last frame was published, if that is longer: several delays may have followed one another
     /// @param promised_ns  when this voter meant to run again
-    Delay delay(std::int64_t away_ns, std::int64_t mute_ns, std::int64_t promised_ns, bool others_exist, std::int64_t now_ns);
+    Delay delay(std::int64_t away_ns, std::int64_t mute_ns, std::int64_t promised_ns, Part part, std::int64_t now_ns);
 
     /// Whatever waited in the queues at the last delay has been handed in by then.
     std::int64_t queues_read_ns() const { return queues_read_ns_; }

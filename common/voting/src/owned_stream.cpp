@@ -47,7 +47,13 @@ void OwnedStream::start_over(std::int64_t now_ns)
     good_frames_ = held_ = 0;
     // After one lease this voter gives out at once what nobody else has: the others need time to find it there again before it writes.
     not_before_ns_ = now_ns + lease_ns_ + good_frames_required_ * interval_ns_;
-    ready_.clear();
+}
+
+void OwnedStream::resume(const OtherVoters& others)
+{
+    right_ = Right::writing;
+    good_frames_ = good_frames_required_;
+    written_ = std::max(written_, others.reached());
 }
 
 std::int64_t OwnedStream::deadline_ns() const
@@ -60,7 +66,9 @@ void OwnedStream::consider_right(const OtherVoters& others, std::int64_t now_ns)
 {
     const bool discovered = !others.stronger_exist() || others.stronger_seen() || listened_ >= listen_frames_;
     const bool proven = discovered && good_frames_ >= good_frames_required_ && now_ns >= not_before_ns_;
-    if (right_ == Right::proving && proven) right_ = Right::holding;
+    if (right_ != Right::proving || !proven) return;
+    right_ = Right::holding;
+    ready_.clear();
 }
 
 /// Asked once for every output, in order.

@@ -12,7 +12,8 @@ namespace quorient::voting {
 /// another it must see no frame twice and none that is older. Hence three rules:
 ///
 /// 1. A voter has the right to write only after a number of good frames. One that has never received a stronger voter first gives both
-///    `listen_s` to discover each other. An absence ends the right, and it returns after one lease and so many intervals at the earliest.
+///    `listen_s` to discover each other. An absence ends the right, and it returns after one lease and so many intervals at the earliest;
+///    at once where nobody has taken over.
 /// 2. It begins with a frame that no voter has published yet, and early enough that no weaker one can have ceased to wait for it.
 /// 3. A frame is written in the order of strength: after the leader has published it, or an interval late where the leader does not.
 ///    One that falls behind the leader by half a lease passes frames over until it has caught up.
@@ -26,10 +27,13 @@ public:
     /// Writes what is due by now. To be called whenever time passes or another voter's output arrives.
     void release(const OtherVoters& others, std::int64_t now_ns);
 
-    bool next(VotedAttitude& output) { return ready_.pop(output); }
+    bool next(VotedAttitude& output) { return may_write() && ready_.pop(output); }
 
-    /// This voter was away: another one may own `voted` now. What next() has not handed out is older than what that one has written.
+    /// This voter was away: another one may own `voted` now, and have written what next() has not handed out yet.
     void start_over(std::int64_t now_ns);
+
+    /// This voter wrote `voted` before it was away, and nobody has written it since.
+    void resume(const OtherVoters& others);
 
     /// The right to write is there, although the first frame to be written may still be to come.
     bool may_write() const { return right_ != Right::proving; }
@@ -65,7 +69,7 @@ private:
     unsigned listen_frames_;                  ///< Good frames after which an unseen stronger voter is taken to be absent.
     BoundedQueue<Waiting, longest_burst> waiting_;      ///< Outputs in order that are neither written nor passed over yet.
     BoundedQueue<VotedAttitude, longest_burst> ready_;  ///< Outputs in order that next() hands out.
-    Right right_ = Right::proving;            ///< Changed by consider_right(), must_hold() and start_over() alone.
+    Right right_ = Right::proving;            ///< Changed by consider_right(), must_hold(), start_over() and resume() alone.
     unsigned good_frames_ = 0;                ///< Own frames since the start or the last absence.
     unsigned listened_ = 0;                   ///< Own frames since the start.
     unsigned held_ = 0;                       ///< Frames passed over while holding.

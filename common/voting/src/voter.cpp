@@ -105,11 +105,14 @@ void Voter::notice(std::int64_t now_ns)
     const std::int64_t away_ns = std::max<std::int64_t>(0, now_ns - *now_ns_);
     *now_ns_ += away_ns;
     const std::int64_t mute_ns = std::max(away_ns, published_ns_ ? *now_ns_ - *published_ns_ : 0);
-    switch (listening_->delay(away_ns, mute_ns, promised_ns_, others_->exist(), *now_ns_)) {
+    const bool owner = state_ == VoterState::owning || (state_ == VoterState::listening && owned_before_);
+    const Listening::Part part = !others_->exist() ? Listening::Part::only_one : owner ? Listening::Part::owner : Listening::Part::standby;
+    switch (listening_->delay(away_ns, mute_ns, promised_ns_, part, *now_ns_)) {
         case Listening::Delay::none:
             return;
         case Listening::Delay::absence:
             ++counters_->absences;
+            owned_before_ = owner;
             narrator_->away(frames_->newest().value_or(Identity{}), seconds(mute_ns));
             owned_->start_over(*now_ns_);
             published_ns_.reset();
@@ -144,11 +147,23 @@ void Voter::end_listening()
     const Identity newest = frames_->newest().value_or(Identity{});
     const OtherVoter* farthest = others_->farthest(*now_ns_);
     if (progress == Listening::Progress::returned) {
+        if (owned_before_ && nobody_took_over()) owned_->resume(*others_);
+        owned_before_ = false;
         missed_until_ = farthest == nullptr ? newest : std::max(newest, farthest->position().identity);
         return;
     }
     if (progress == Listening::Progress::alone) frames_->pass(newest);
     if (farthest != nullptr) adopt(farthest->newest());
+}
+
+/// Another voter that runs would have published the frames that have been here for a lease. It may have been one frame ahead when this one was
+/// stopped.
+bool Voter::nobody_took_over() const
+{
+    const std::optional<Identity> newest = frames_->newest();
+    const Identity mine = output_->identity();
+    const auto unanswered = static_cast<std::uint64_t>(settings_->lease_s / settings_->interval_s);
+    return newest && newest->epoch == mine.epoch && newest->sequence >= mine.sequence + unanswered && others_->reached().identity <= Identity{mine.epoch, mine.sequence + 1};
 }
 
 /// In order: a frame is published before any later one. Frames of which only excluded lanes delivered a sample are passed over with the

@@ -1,6 +1,6 @@
 // A voter that did not run for a while: it gives out late what nobody else has given out, and nothing else.
 
-#include "scene.hpp"
+#include "pair_of_voters.hpp"
 
 #include <gtest/gtest.h>
 #include <algorithm>
@@ -116,6 +116,7 @@ struct Stronger {
     {
         for (std::uint64_t sequence = 0; sequence < lost_from; ++sequence) frame(sequence, 0, true);
         scene.stopped_until(Scene::time_of(back_from) - ms);
+        scene.at(scene.now, output_by(2, lost_from + 10, lost_from + 11));  // it took over
         for (std::uint64_t waiting = back_from - 40; waiting < back_from; ++waiting) {  // in its queues; the other's outputs are on their way still
             for (std::size_t lane = 0; lane < 3; ++lane) scene.at(scene.now, sample_of(lane, waiting));
         }
@@ -185,6 +186,67 @@ TEST(StopBeforeAWrite, too_short_for_another_voter_to_take_over_keeps_no_frame_b
 {
     EXPECT_TRUE(is_written_after(0));
     EXPECT_TRUE(is_written_after(20 * ms));
+}
+
+/// The whole machine stands still for a while: the lanes' samples wait in the queues of both voters.
+struct StandStill {
+    /// @param weaker_later_ns  the weaker voter goes on so much later than the stronger one
+    StandStill(std::int64_t still_ns, std::int64_t weaker_later_ns)
+    {
+        pair.frames(0, lost_from - 1);
+        const std::int64_t wakes = Scene::time_of(lost_from) - ms + still_ns;
+        pair.strong.stopped_until(wakes);
+        const std::uint64_t before = deliver(pair.strong, lost_from, wakes);
+        pair.weak.stopped_until(wakes + weaker_later_ns);
+        const std::uint64_t next = deliver(pair.weak, lost_from, pair.weak.now);
+        deliver(pair.strong, before, pair.weak.now);
+        pair.frames(next, end);
+    }
+
+    /// The frames up to this time that are due by then, at once. @returns the next frame.
+    static std::uint64_t deliver(Scene& scene, std::uint64_t sequence, std::int64_t time)
+    {
+        for (; Scene::time_of(sequence) <= time; ++sequence) {
+            for (std::size_t lane = 0; lane < 3; ++lane) scene.at(time, sample_of(lane, sequence));
+        }
+        return sequence;
+    }
+
+    Pair pair;
+};
+
+TEST(StandStillOfTheMachine, leaves_no_frame_of_voted_out)
+{
+    for (const std::int64_t still_ns : {42 * ms, 60 * ms, 200 * ms}) {
+        for (const std::int64_t weaker_later_ns : {0 * ms, 1 * ms, 4 * ms}) {
+            SCOPED_TRACE(testing::Message() << still_ns / ms << " ms still, the weaker one " << weaker_later_ns / ms << " ms later");
+            StandStill scene(still_ns, weaker_later_ns);
+            ASSERT_GT(scene.pair.strong.voter.counters().absences, 0U);
+            std::uint64_t expected = 20;  // good frames before owning
+            for (const VotedAttitude& output : scene.pair.strong.owned) EXPECT_EQ(output.sequence, expected++);
+            EXPECT_GE(expected, end);
+            const auto& weak = scene.pair.weak.owned;
+            const auto wrote = [](const VotedAttitude& output) { return output.sequence >= lost_from && output.sequence < lost_from + 40; };
+            EXPECT_TRUE(std::ranges::none_of(weak, wrote)) << "a reader that lost the stronger one would receive frames twice";
+        }
+    }
+}
+
+/// The weaker voter runs all the time and has had nothing to publish: it takes the first frame that comes.
+TEST(StandStillOfTheMachine, gives_the_owner_its_right_back_only_where_frames_came_that_nobody_published)
+{
+    constexpr std::uint64_t first = lost_from + 26;
+    Pair pair;
+    pair.frames(0, lost_from - 1);
+    pair.strong.stopped_until(Scene::time_of(lost_from - 1) + 60 * ms);
+    pair.frames(first, end);
+    const auto first_written = [](const Scene& scene) {
+        const auto found =
+            std::ranges::find_if(scene.owned, [](const VotedAttitude& output) { return output.sequence >= lost_from && output.vouching_mask != 0; });
+        return found == scene.owned.end() ? 0 : found->sequence;
+    };
+    EXPECT_EQ(first_written(pair.weak), first);
+    EXPECT_GT(first_written(pair.strong), first + 15);
 }
 
 }  // namespace

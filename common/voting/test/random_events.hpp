@@ -41,6 +41,7 @@ enum class Happening : std::uint8_t {
     pause,
     restart_publisher,
     stall,
+    standstill,  ///< All voters stop.
     kill_voter,
     revive_voter
 };
@@ -55,7 +56,7 @@ inline std::ostream& operator<<(std::ostream& out, const Event& event)
 {
     static constexpr std::array names{
         "frame", "kill",       "revive",      "lie", "honest", "sensor_fault", "readmit", "pause", "restart_publisher",
-        "stall", "kill_voter", "revive_voter"};
+        "stall", "standstill", "kill_voter", "revive_voter"};
     return out << names[static_cast<std::size_t>(event.what)] << '(' << event.where << ',' << event.how << ')';
 }
 

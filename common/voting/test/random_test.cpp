@@ -138,7 +138,8 @@ TEST(RandomEvents, of_two_voters_leave_no_frame_out_and_never_step_back)
             Events events(40, {Happening::frame, 0, 0});
             for (int happening = 0; happening < 4; ++happening) {
                 events.push_back(
-                    {any_of(random, {Happening::kill_voter, Happening::stall, Happening::revive_voter, Happening::kill, Happening::revive}),
+                    {any_of(random, {Happening::kill_voter, Happening::stall, Happening::standstill, Happening::revive_voter, Happening::kill,
+                                     Happening::revive}),
                      3 * (random() % 2), random()});  // lane a; either voter
                 const std::size_t quiet = random() % 3 == 0 ? random() % 10 : 45;
                 events.insert(events.end(), quiet, {Happening::frame, 0, 0});

@@ -108,6 +108,9 @@ public:
             case Happening::stall:
                 stall(event.where % voters_.size(), random);
                 break;
+            case Happening::standstill:
+                standstill(random);
+                break;
             case Happening::kill_voter:
                 kill_voter(event.where % voters_.size());
                 break;
@@ -205,6 +208,16 @@ private:
         }
         voters_[index].stopped_until = now_ + stop_ns;
         if (voters_.size() == 1) now_ = std::max(now_, voters_[index].stopped_until);
+    }
+
+    /// The machine: its processes go on one after the other.
+    void standstill(Random& random)
+    {
+        for (std::size_t voter = 0; voter < voters_.size(); ++voter) {
+            if (!is_in_service(voter)) return;
+        }
+        const auto still_ns = ms * static_cast<std::int64_t>(random() % 150);
+        for (Process& process : voters_) process.stopped_until = now_ + still_ns + ms / 10 * static_cast<std::int64_t>(random() % 100);
     }
 
     void revive(Lane& lane, Random& random)
