@@ -16,42 +16,38 @@ CASES = ({"transport": "UDP, Cyclone DDS", "rate_hz": 200}, {"transport": "UDP, 
          {"transport": "UDP, Cyclone DDS", "rate_hz": 1000, "axes": 24})
 
 
-class Reader(threading.Thread):
-    """An open page: reads the stream, as fast as it comes, until the monitor ends."""
+class Client(threading.Thread):
+    """Reads what comes, as fast as it comes, and connects again until it is told to end."""
 
-    def __init__(self, port):
+    def __init__(self, port, lengths):
         super().__init__(daemon=True)
-        self.port, self.bytes, self.ended = port, 0, False
+        self.port, self.lengths, self.bytes, self.ended = port, lengths, 0, False
 
     def run(self):
         while not self.ended:
             try:
-                connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=2)
-                connection.request("GET", "/stream")
-                response = connection.getresponse()
-                while data := response.read1(65536):
-                    self.bytes += len(data)
-            except (OSError, http.client.HTTPException):
+                for length in self.lengths(self.port):
+                    self.bytes += length
+            except (OSError, IndexError, http.client.HTTPException):
                 threading.Event().wait(0.05)
 
 
-class Viewer(threading.Thread):
-    """A viewer of all channels, as Reader."""
+def page(port):
+    """What an open page reads: the lengths of the pieces."""
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=2)
+    connection.request("GET", "/stream")
+    response = connection.getresponse()
+    while data := response.read1(65536):
+        yield len(data)
 
-    def __init__(self, port):
-        super().__init__(daemon=True)
-        self.port, self.bytes, self.ended = port, 0, False
 
-    def run(self):
-        while not self.ended:
-            try:
-                viewer = WebSocket(self.port, "foxglove.sdk.v1")
-                viewer.send_json({"op": "subscribe", "subscriptions": [{"id": channel, "channelId": channel} for channel in range(6)]})
-                while frame := viewer.receive():
-                    self.bytes += len(frame[1])
-                viewer.close()
-            except (OSError, IndexError):
-                threading.Event().wait(0.05)
+def viewer(port):
+    """What a viewer of all channels reads."""
+    socket = WebSocket(port, "foxglove.sdk.v1")
+    socket.send_json({"op": "subscribe", "subscriptions": [{"id": channel, "channelId": channel} for channel in range(6)]})
+    while frame := socket.receive():
+        yield len(frame[1])
+    socket.close()
 
 
 def measure(runner, case, seconds, port, monitored):
@@ -60,7 +56,7 @@ def measure(runner, case, seconds, port, monitored):
     commands = graphs.our_commands(file, case)
     if monitored:
         commands = {"monitor": [graphs.BIN / "quorient-monitor", file, "--set", f"monitor.port={port}"], **commands}
-    clients = (Reader(port), Viewer(port))
+    clients = (Client(port, page), Client(port, viewer))
     if monitored:
         for client in clients:
             client.start()
