@@ -11,6 +11,7 @@ from integration_tests.harness.steady import STEADY_FRAMES, Steady
 from integration_tests.harness.streams import COASTING, HELD, LOST, SINGLE
 
 FAULT_S = 1.5
+SECURED_FAULT_S = 8
 FAULTY_AXIS = 1
 STOPPED_S = 2.0
 
@@ -50,9 +51,14 @@ EVERYTHING = [
 BY_NAME = {cell.name: cell for cell in EVERYTHING}
 
 
-def act_frame(rate_hz):
+def fault_s(level):
+    """Where members prove who they are, two processors need seconds until all have met."""
+    return FAULT_S if level == "none" else SECURED_FAULT_S
+
+
+def act_frame(rate_hz, level="none"):
     """The second contaminated frame is on its way: no detector can have confirmed yet."""
-    return FAULT_S * rate_hz + 1.5
+    return fault_s(level) * rate_hz + 1.5
 
 
 def lease_frames(rate_hz):
@@ -105,12 +111,12 @@ def await_outcome(pipeline, cell, since):
 
 def run(cell, level="none", rate_hz=RATE_HZ):
     """@returns figures, the bounds that were not met, and logs where there are any."""
-    faults = [f"axis={FAULTY_AXIS},kind=scale,value=0.8,start={FAULT_S}"] if cell.fault else []
+    faults = [f"axis={FAULTY_AXIS},kind=scale,value=0.8,start={fault_s(level)}"] if cell.fault else []
     composition = [f"compose=[[{', '.join(cell.roles)}]]"] if cell.composed else []
     assignments = ("source.duration_s=600", f"source.faults={faults}", *composition)
     with Pipeline(*assignments, plain_vendor=cell.plain_vendor, level=level, rate_hz=rate_hz) as pipeline:
         pipeline.until_running()
-        since = pipeline.until_frame(act_frame(rate_hz))
+        since = pipeline.until_frame(act_frame(rate_hz, level))
         act(pipeline, cell)
         late = None
         try:
