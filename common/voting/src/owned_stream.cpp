@@ -51,6 +51,7 @@ void OwnedStream::start_over(std::int64_t now_ns)
 
 void OwnedStream::resume(const OtherVoters& others)
 {
+    if (right_ != Right::proving) return;
     right_ = Right::writing;
     good_frames_ = good_frames_required_;
     written_ = std::max(written_, others.reached());

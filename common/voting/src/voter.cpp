@@ -107,19 +107,15 @@ void Voter::notice(std::int64_t now_ns)
     const std::int64_t mute_ns = std::max(away_ns, published_ns_ ? *now_ns_ - *published_ns_ : 0);
     const bool owner = state_ == VoterState::owning || (state_ == VoterState::listening && owned_before_);
     const Listening::Part part = !others_->exist() ? Listening::Part::only_one : owner ? Listening::Part::owner : Listening::Part::standby;
-    switch (listening_->delay(away_ns, mute_ns, promised_ns_, part, *now_ns_)) {
-        case Listening::Delay::none:
-            return;
-        case Listening::Delay::absence:
-            ++counters_->absences;
-            owned_before_ = owner;
-            narrator_->away(frames_->newest().value_or(Identity{}), seconds(mute_ns));
-            owned_->start_over(*now_ns_);
-            published_ns_.reset();
-            [[fallthrough]];
-        case Listening::Delay::pause:
-            state_ = VoterState::listening;
-    }
+    const Listening::Delay delay = listening_->delay(away_ns, mute_ns, promised_ns_, part, *now_ns_);
+    if (delay == Listening::Delay::none) return;
+    owned_before_ = owner;
+    state_ = VoterState::listening;
+    if (delay == Listening::Delay::pause) return;
+    ++counters_->absences;
+    narrator_->away(frames_->newest().value_or(Identity{}), seconds(mute_ns));
+    owned_->start_over(*now_ns_);
+    published_ns_.reset();
 }
 
 void Voter::go_on()
@@ -148,7 +144,6 @@ void Voter::end_listening()
     const OtherVoter* farthest = others_->farthest(*now_ns_);
     if (progress == Listening::Progress::returned) {
         if (owned_before_ && nobody_took_over()) owned_->resume(*others_);
-        owned_before_ = false;
         missed_until_ = farthest == nullptr ? newest : std::max(newest, farthest->position().identity);
         return;
     }
@@ -212,7 +207,9 @@ void Voter::consider_state()
     VoterState next = others_->leader(*now_ns_) == nullptr ? VoterState::owning : VoterState::following;
     if (!owned_->may_write()) next = VoterState::waiting;
     else if (output_->repeats() && others_->are_ahead_of(output_->identity(), *now_ns_)) next = VoterState::cut_off;
-    if (next == VoterState::owning && state_ != next) narrator_->ownership(output_->identity(), others_->stronger_exist());
+    const bool took_over = next == VoterState::owning && state_ != next && !owned_before_;
+    if (took_over) narrator_->ownership(output_->identity(), others_->stronger_exist());
+    owned_before_ = false;
     state_ = next;
 }
 

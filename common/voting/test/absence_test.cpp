@@ -225,6 +225,7 @@ TEST(StandStillOfTheMachine, leaves_no_frame_of_voted_out)
             std::uint64_t expected = 20;  // good frames before owning
             for (const VotedAttitude& output : scene.pair.strong.owned) EXPECT_EQ(output.sequence, expected++);
             EXPECT_GE(expected, end);
+            EXPECT_EQ(scene.pair.strong.count(EventCode::ownership_taken), 1U) << "nothing has changed for an operator";
             const auto& weak = scene.pair.weak.owned;
             const auto wrote = [](const VotedAttitude& output) { return output.sequence >= lost_from && output.sequence < lost_from + 40; };
             EXPECT_TRUE(std::ranges::none_of(weak, wrote)) << "a reader that lost the stronger one would receive frames twice";
