@@ -79,7 +79,8 @@ void Frames::receive(LaneIndex lane, const AttitudeState& attitude, std::int64_t
     }
     if (&board_.lane(lane).newest() == board_.lane(lane).at(identity)) corroboration_.on_sample(lane, attitude, now_ns);
     if (arrival == Timeline::Arrival::late) {
-        ++counters_.late;
+        const bool missed = now_ns > timeline_.due_ns(identity.sequence) + durations_.patience_ns;  // else the others were quicker
+        counters_.late += missed ? 1 : 0;
         board_.late_vote(lane, attitude, now_ns);
     } else if (is_countable(attitude)) {
         timeline_.open(identity, now_ns);

@@ -150,6 +150,26 @@ TEST(Voter, drops_and_counts_duplicates_and_what_comes_too_late)
     EXPECT_EQ(scene.outputs.size(), before);
 }
 
+/// A majority publishes a frame at once; the third lane's sample is always behind it.
+TEST(Voter, counts_no_lane_as_late_whose_sample_comes_before_patience_ends)
+{
+    const auto late_after = [](std::int64_t behind_ns) {
+        Scene scene;
+        for (std::uint64_t sequence = 0; sequence < 100; ++sequence) {
+            for (std::size_t lane = 0; lane < 2; ++lane) scene.at(Scene::time_of(sequence), sample_of(lane, sequence));
+            const std::int64_t now = Scene::time_of(sequence) + interval - 1;
+            for (const std::uint64_t third : {sequence, sequence - 1}) {
+                const std::int64_t time = Scene::time_of(third) + behind_ns;
+                if (third <= sequence && time > now - interval && time <= now) scene.at(time, sample_of(2, third));
+            }
+        }
+        EXPECT_EQ(scene.outputs.size(), 100U);
+        return scene.voter.counters().late;
+    };
+    EXPECT_EQ(late_after(4 * ms), 0U);
+    EXPECT_GT(late_after(6 * ms), 90U);
+}
+
 TEST(Voter, counts_what_is_not_of_its_unit_or_lanes_as_foreign)
 {
     Scene scene;

@@ -31,7 +31,7 @@ struct VoterCounters {
     std::uint64_t published = 0;
     std::uint64_t gaps = 0;  ///< frames that neither this voter nor another one published
     std::uint64_t duplicates = 0;
-    std::uint64_t late = 0;      ///< after their frame was published (they still vouch) or older than that
+    std::uint64_t late = 0;      ///< after their frame's patience had ended (they still vouch) or older than that
     std::uint64_t foreign = 0;   ///< unknown lanes, detectors, voters, units; epochs and sequences that no other lane knows
     std::uint64_t rejected = 0;  ///< not finite or not a unit quaternion
     std::uint64_t primary_changes = 0;
