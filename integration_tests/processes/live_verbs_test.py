@@ -90,6 +90,15 @@ class LiveVerbs(ProcessTest):
         watching.communicate(timeout=10)
         self.assertEqual(watching.returncode, 0)
 
+    def test_status_that_is_watched_ends_where_nobody_reads_it(self):
+        watched = subprocess.Popen(self.command("quorient", "status", "--watch", "--seconds", 0.3, "--domain", self.domain), env=self.environment,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(watched.kill)
+        self.assertTrue(watched.stdout.readline())
+        watched.stdout.close()
+        self.assertIn("standard output cannot be written", watched.stderr.read())
+        self.assertEqual(watched.wait(20), 2)
+
     def test_sigterm_ends_everything_in_order_within_two_seconds(self):
         self.pipeline.send_signal(signal.SIGTERM)
         self.pipeline.wait(timeout=5)

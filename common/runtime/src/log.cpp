@@ -6,8 +6,19 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <string>
 
 namespace quorient::runtime {
+
+namespace {
+
+/// Throws nothing: where stderr cannot be written, nobody is left to read it.
+void say(std::string_view text)
+{
+    std::fputs((std::string(text) + '\n').c_str(), stderr);
+}
+
+}  // namespace
 
 void start_log()
 {
@@ -18,7 +29,7 @@ void start_log()
 
 int report(std::string_view problem)
 {
-    fmt::print(stderr, "{}\n", problem);
+    say(problem);
     return 2;
 }
 
@@ -28,7 +39,7 @@ int guarded(const std::function<int(int, char**)>& body, int argc, char** argv)
     try {
         return body(argc, argv);
     } catch (const std::exception& error) {
-        fmt::print(stderr, "{}\n", error.what());
+        say(error.what());
         return 1;
     }
 }

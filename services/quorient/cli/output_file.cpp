@@ -94,7 +94,7 @@ void OutputFile::keep_first(std::uint64_t bytes)
     if (fs::is_regular_file(name_, unknown) && fs::file_size(name_, unknown) > bytes) fs::resize_file(name_, bytes, unknown);
 }
 
-void OutputFile::finish()
+bool OutputFile::is_complete()
 {
     if (failure().empty() && stream_.is_open()) {
         errno = 0;
@@ -102,7 +102,41 @@ void OutputFile::finish()
         std::error_code unknown;
         if (!stream_ || (fs::is_regular_file(name_, unknown) && !is_on_disk(name_))) failure_ = error_text();
     }
-    if (!failure_.empty()) fail(fmt::format("{}: {}", name_, failure_));
+    return failure_.empty();
+}
+
+void OutputFile::finish()
+{
+    if (!is_complete()) fail(fmt::format("{}: {}", name_, failure_));
+}
+
+void OutputFile::finish_document()
+{
+    if (is_complete()) return;
+    stream_.close();
+    std::error_code unknown;
+    if (fs::is_regular_file(name_, unknown)) fs::remove(name_, unknown);
+    fail(fmt::format("{}: {}; it is not written", name_, failure_));
+}
+
+void OutputFile::finish_rows()
+{
+    if (is_complete()) return;
+    const auto lines = keep_whole_lines();
+    fail(fmt::format("{}: {}; {} whole {} in it", name_, failure_, lines, lines == 1 ? "line is" : "lines are"));
+}
+
+void refuse_shared_names(const std::vector<std::string>& inputs, std::initializer_list<std::string> outputs)
+{
+    std::vector<std::string> names = inputs;
+    for (const std::string& output : outputs) {
+        if (output.empty()) continue;
+        for (const std::string& name : names) {
+            std::error_code unknown;
+            if (output == name || fs::equivalent(output, name, unknown)) fail(fmt::format("{}: is named twice, as an output and otherwise", output));
+        }
+        names.push_back(output);
+    }
 }
 
 void add_force(Verb& verb, bool& force)

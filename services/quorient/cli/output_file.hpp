@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <fstream>
+#include <initializer_list>
 #include <string>
+#include <vector>
 
 namespace quorient::cli {
 
@@ -27,16 +29,27 @@ public:
     /// After a failure: cuts the file behind its first bytes.
     void keep_first(std::uint64_t bytes);
 
-    /// Ends the verb unless all that was written is on the disk.
+    /// Ends the verb unless all that was written is on the disk. What there is of it stays.
     void finish();
+
+    /// As finish(), of a page, picture or YAML file: half of one helps nobody, and is taken away.
+    void finish_document();
+
+    /// As finish(), of rows: whole ones stay, and the verb says how many.
+    void finish_rows();
 
     const std::string& name() const { return name_; }
 
 private:
+    bool is_complete();
+
     std::string name_;
     std::ofstream stream_;
     std::string failure_;
 };
+
+/// Ends the verb where an output is a file that is read, or another output, under whatever name. Empty names count for nothing.
+void refuse_shared_names(const std::vector<std::string>& inputs, std::initializer_list<std::string> outputs);
 
 /// `--force`: an existing file is overwritten.
 void add_force(Verb& verb, bool& force);

@@ -283,27 +283,56 @@ std::vector<std::string> Program::verbs() const
 
 namespace {
 
+/// On stderr. Where that cannot be written either (both in one closed pipe), nobody is left to read it.
+void say(const std::string& text)
+{
+    std::fputs((text + '\n').c_str(), stderr);
+}
+
 /// Sees that what was printed has left. @returns the exit code, `refused` if it has not.
 int with_output_written(int exit_code)
 {
     errno = 0;
     const bool flushed = std::fflush(stdout) == 0 && static_cast<bool>(std::cout.flush());
     if (flushed && std::ferror(stdout) == 0) return exit_code;
-    fmt::print(stderr, "standard output cannot be written{}\n", errno != 0 ? fmt::format(": {}", std::strerror(errno)) : "");
+    say(fmt::format("standard output cannot be written{}", errno != 0 ? fmt::format(": {}", std::strerror(errno)) : ""));
     return ExitCode::refused;
+}
+
+/// What looks like an option and is none. CLI11 lists it among what follows it, or says that something else is missing.
+std::optional<std::string> unknown_option(const CLI::App& app, const std::string& verb, const std::vector<std::string>& arguments)
+{
+    for (const std::string& argument : arguments) {
+        if (argument == "--") break;
+        const std::string name = argument.substr(0, argument.find('='));
+        if (!name.starts_with("--") || app.get_option_no_throw(name) != nullptr) continue;
+        std::vector<std::string> known;
+        for (const auto* option : app.get_options())
+            for (const std::string& one : option->get_lnames()) known.push_back("--" + one);
+        return fmt::format("unknown option '{}'{}{}\nRun with --help for more information.", name, verb.empty() ? "" : " of " + verb,
+                           configuration::suggestion(name, known));
+    }
+    return std::nullopt;
+}
+
+/// A verb or an option that there is not, with a suggestion.
+std::optional<std::string> unknown_word(const CLI::App& app, const std::vector<std::string>& verbs, const std::vector<std::string>& arguments)
+{
+    if (arguments.empty()) return std::nullopt;
+    const std::string& verb = arguments.front();
+    if (verb.starts_with("-")) return unknown_option(app, "", {verb});
+    if (std::find(verbs.begin(), verbs.end(), verb) != verbs.end())
+        return unknown_option(*app.get_subcommand(verb), verb, {arguments.begin() + 1, arguments.end()});
+    return fmt::format("unknown verb '{}'{}\nRun with --help for a list.", verb, configuration::suggestion(verb, verbs));
 }
 
 }  // namespace
 
 int Program::run_verb(std::vector<std::string> arguments)
 {
-    if (!arguments.empty() && !arguments.front().starts_with("-")) {
-        const auto known = verbs();
-        if (std::find(known.begin(), known.end(), arguments.front()) == known.end()) {
-            fmt::print(stderr, "unknown verb '{}'{}\nRun with --help for a list.\n", arguments.front(),
-                       configuration::suggestion(arguments.front(), known));
-            return ExitCode::refused;
-        }
+    if (const auto problem = unknown_word(*app_, verbs(), arguments)) {
+        say(*problem);
+        return ExitCode::refused;
     }
     try {
         arguments = with_joined_lists(lists_, arguments);
@@ -314,7 +343,7 @@ int Program::run_verb(std::vector<std::string> arguments)
     } catch (const CLI::ParseError& error) {
         return app_->exit(error) == 0 ? ExitCode::done : ExitCode::refused;
     } catch (const std::system_error& error) {  // of a file or of standard output
-        fmt::print(stderr, "{}\n", error.what());
+        say(error.what());
         return ExitCode::refused;
     }
     return ExitCode::done;

@@ -106,7 +106,7 @@ std::string svg(const std::vector<Chart>& charts)
 void write_svg(OutputFile& file, const std::vector<Chart>& charts)
 {
     file.stream() << svg(charts);
-    file.finish();
+    file.finish_document();
 }
 
 }  // namespace quorient::cli

@@ -172,6 +172,15 @@ TEST_F(DiagnoseVerb, writes_a_page_that_needs_no_network_and_no_script)
     EXPECT_THAT(page, Not(HasSubstr("http")));
 }
 
+TEST_F(DiagnoseVerb, never_writes_its_page_over_a_log)
+{
+    const std::string log = written("log.csv", table(3, bias_of_g1_y)), before = content(log);
+    const Output output = run(log + " --html " + log + " --force");
+    EXPECT_EQ(output.exit_code, 2);
+    EXPECT_THAT(output.error, HasSubstr("is named twice"));
+    EXPECT_EQ(content(log), before);
+}
+
 TEST_F(DiagnoseVerb, takes_the_biases_of_a_healthy_log)
 {
     const auto small = [](double, std::size_t gyro, Triad& rate) {

@@ -93,6 +93,23 @@ TEST_F(CommandLine, suggests_the_verb_that_was_meant)
     EXPECT_THAT(output.error, HasSubstr("unknown verb 'replya'; did you mean 'replay'?"));
 }
 
+TEST_F(CommandLine, suggests_the_option_that_was_meant_before_it_complains_of_anything_else)
+{
+    const auto near = run_program(program, "replay x.csv --sytem s.yaml");  // which also lacks --system
+    EXPECT_EQ(near.exit_code, ExitCode::refused);
+    EXPECT_THAT(near.error, HasSubstr("unknown option '--sytem' of replay; did you mean '--system'?"));
+    EXPECT_THAT(run_program(program, "layout cone-4 --wihout=1").error, HasSubstr("unknown option '--wihout' of layout; did you mean '--without'?"));
+    EXPECT_THAT(run_program(program, "layout cone-4 --nothing-like-it").error, HasSubstr("unknown option '--nothing-like-it' of layout\n"));
+    EXPECT_THAT(run_program(program, "--verison").error, HasSubstr("did you mean '--version'?"));
+}
+
+TEST_F(CommandLine, takes_every_option_that_it_has)
+{
+    for (const auto& option : program.number_options())
+        EXPECT_THAT(run_program(program, option.verb + " " + option.option + " x").error, Not(HasSubstr("unknown option"))) << option.verb << option.option;
+    for (const auto& verb : program.verbs()) EXPECT_EQ(run_program(program, verb + " --help").exit_code, ExitCode::done) << verb;
+}
+
 TEST_F(CommandLine, states_in_every_help_how_a_verb_ends)
 {
     for (const auto& verb : program.verbs()) {

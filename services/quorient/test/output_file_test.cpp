@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -89,6 +91,60 @@ TEST_F(WrittenFile, tells_a_full_disk_at_the_write_and_at_the_end)
     file.stream() << "a row\n";
     EXPECT_EQ(file.failure(), "No space left on device");
     EXPECT_THAT(ending_of([&] { file.finish(); }), HasSubstr("/dev/full: No space left on device"));
+}
+
+/// No file may grow beyond so many bytes meanwhile: a disk that is full.
+class SmallDisk {
+public:
+    explicit SmallDisk(rlim_t bytes)
+    {
+        ::getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit small{bytes, before_.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &small);
+        handler_ = std::signal(SIGXFSZ, SIG_IGN);
+    }
+    ~SmallDisk()
+    {
+        ::setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_);
+    }
+    SmallDisk(const SmallDisk&) = delete;
+    SmallDisk& operator=(const SmallDisk&) = delete;
+
+private:
+    rlimit before_{};
+    void (*handler_)(int) = SIG_DFL;
+};
+
+TEST_F(WrittenFile, is_taken_away_where_a_document_is_cut)
+{
+    OutputFile file(path("page.html"), false);
+    {
+        const SmallDisk small(4096);
+        file.stream() << std::string(10'000, 'x');
+    }
+    EXPECT_THAT(ending_of([&] { file.finish_document(); }), HasSubstr("File too large; it is not written"));
+    EXPECT_FALSE(std::filesystem::exists(path("page.html")));
+}
+
+TEST_F(WrittenFile, keeps_whole_rows_and_counts_them_where_it_is_cut)
+{
+    OutputFile file(path("rows"), false);
+    {
+        const SmallDisk small(25);
+        for (int row = 0; row < 5; ++row) file.stream() << "ten bytes\n";
+    }
+    EXPECT_THAT(ending_of([&] { file.finish_rows(); }), HasSubstr("File too large; 2 whole lines are in it"));
+    EXPECT_EQ(content_of(path("rows")), "ten bytes\nten bytes\n");
+}
+
+TEST_F(WrittenFile, is_refused_where_it_is_read_or_written_under_another_name_too)
+{
+    std::ofstream(path("log")) << "rows\n";
+    std::filesystem::create_symlink(path("log"), path("same"));
+    EXPECT_THAT(ending_of([&] { refuse_shared_names({path("log"), ""}, {"", path("same")}); }), HasSubstr("is named twice"));
+    EXPECT_THAT(ending_of([&] { refuse_shared_names({}, {path("a"), path("a")}); }), HasSubstr("is named twice"));
+    EXPECT_EQ(ending_of([&] { refuse_shared_names({path("log")}, {path("a"), ""}); }), "went on");
 }
 
 TEST_F(WrittenFile, may_be_a_device_without_an_end)

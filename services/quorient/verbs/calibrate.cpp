@@ -114,7 +114,7 @@ void conclude(SampleStore& samples, const ClusterDescription& nominal, const std
     else fmt::print("{}", calibration_text(calibration, found, samples, statistics));
     if (out) {
         out->stream() << calibration::to_yaml(calibration.cluster);
-        out->finish();
+        out->finish_document();
     }
     if (plot) write_svg(*plot, calibration_charts(calibration));
 }
@@ -123,6 +123,9 @@ void run(const CalibrateOptions& options)
 {
     const bool live = !options.live.file.empty();
     if (live == !options.logs.empty()) fail("name logs, or a running system by --live SYSTEM.yaml");
+    std::vector<std::string> inputs = options.logs;
+    inputs.push_back(options.live.file);
+    refuse_shared_names(inputs, {options.out, options.plot});
     std::optional<OutputFile> out, plot;
     if (!options.out.empty()) out.emplace(options.out, options.force);
     if (!options.plot.empty()) plot.emplace(options.plot, options.force);

@@ -205,7 +205,7 @@ void write_file(const DesignOptions& options, std::size_t place, std::string_vie
 {
     OutputFile file(output_name(options, place, extension), options.force);
     file.stream() << text;
-    file.finish();
+    file.finish_document();
 }
 
 /// The demands as they are typed, so that the files say how they came about.

@@ -46,11 +46,14 @@ SurveyedFrames read(const std::vector<std::string>& files, const DiagnoseOptions
 void write_page(OutputFile& file, const diagnosis::Report& report)
 {
     file.stream() << diagnosis_page(report);
-    file.finish();
+    file.finish_document();
 }
 
 void run_diagnose(const DiagnoseOptions& options)
 {
+    std::vector<std::string> inputs = options.logs;
+    inputs.push_back(options.reference.value_or(""));
+    refuse_shared_names(inputs, {options.html.value_or("")});
     std::optional<OutputFile> page;
     if (options.html) page.emplace(*options.html, options.force);
     diagnosis::Options chosen = diagnosis_options(options);

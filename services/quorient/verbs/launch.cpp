@@ -252,7 +252,7 @@ private:
         if (!options_.json && system_.expectations.any() && failures.empty() && !failed_) fmt::print("as expected\n");
         if (picture_) {
             picture_->stream() << report::run_picture(system_, observer_, *timeline_);
-            picture_->finish();
+            picture_->finish_document();
         }
         return failed_ || !failures.empty() ? 1 : 0;
     }
@@ -283,8 +283,8 @@ int launch_system(const LaunchOptions& options)
     if (!options.join) {
         const auto running = already_running(chosen, system.unit, **bus);
         if (!running.empty())
-            fail(fmt::format("of unit {}, {} already run on domain {}: stop them, choose another --domain, or give --join", system.unit,
-                             fmt::join(running, ", "), system.monitor.bus.domain));
+            fail(fmt::format("unit {} already runs on domain {}: {}; stop it, choose another --domain, or give --join", system.unit, system.monitor.bus.domain,
+                             fmt::join(running, ", ")));
     }
     return Run{options, chosen, system, **bus}.run();
 }

@@ -98,23 +98,9 @@ bool leaves_expectations_out(const SystemOptions& options)
     return as_it_stands && !as_it_stands->sensor.source.scenario.faults.empty();
 }
 
-/// No output may be a log that is read, or another output.
-void refuse_shared_names(const ReplayOptions& options)
-{
-    std::vector<std::string> names = options.logs;
-    for (const auto& out : {options.events.value_or(""), options.verdicts.value_or(""), options.plot}) {
-        if (out.empty()) continue;
-        for (const auto& name : names) {
-            std::error_code unknown;
-            if (out == name || std::filesystem::equivalent(out, name, unknown)) fail(fmt::format("{}: is named twice, as an output and otherwise", out));
-        }
-        names.push_back(out);
-    }
-}
-
 int replay(ReplayOptions options)
 {
-    refuse_shared_names(options);
+    refuse_shared_names(options.logs, {options.events.value_or(""), options.verdicts.value_or(""), options.plot});
     if (leaves_expectations_out(options.system)) options.system.set.push_back("expect=null");
     if (options.from_s && options.to_s && !(*options.from_s < *options.to_s))
         fail(fmt::format("--from {} is not before --to {}", *options.from_s, *options.to_s));
@@ -143,7 +129,7 @@ int replay(ReplayOptions options)
     }
     if (run.truth_frames() == 0) fail(fmt::format("no frame to replay: {}", offline.remarks()));
     for (auto* const file : {&events, &verdicts})
-        if (*file) (*file)->finish();
+        if (*file) (*file)->finish_rows();
     const auto failures = report::unmet(system, run);
     auto json = report_json(run, report, offline);
     json["unmet"] = failures;
@@ -151,7 +137,7 @@ int replay(ReplayOptions options)
     else print_table(json, run);
     if (picture) {
         picture->stream() << report::run_picture(system, run, *timeline);
-        picture->finish();
+        picture->finish_document();
     }
     for (const auto& failure : failures) fmt::print(stderr, "not as expected: {}\n", failure);
     if (!failures.empty()) fmt::print(stderr, "the expectations are those of {}; --set expect=null leaves them out\n", options.system.file);

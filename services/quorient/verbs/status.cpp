@@ -183,12 +183,12 @@ int status(const StatusOptions& options)
         find_level_since(received.events, options.bus.unit, received.standing);
         if (options.watch && ::isatty(STDOUT_FILENO) == 1) fmt::print("\033[H\033[J");
         print(received, options, clock.wall_ns());
-        std::fflush(stdout);
+        return std::fflush(stdout) == 0;
     };
     const auto period_ns = static_cast<std::int64_t>(options.seconds * 1e9);
     if (options.watch)
         loop.every(period_ns, [&] {
-            show();
+            if (!show()) loop.quit(ExitCode::refused);  // nobody reads it any more
             received.begin_next(clock.steady_ns());
         });
     else loop.timer([&] { loop.quit(0); }).set(clock.steady_ns() + period_ns);
