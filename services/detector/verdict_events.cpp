@@ -19,6 +19,13 @@ AxisMask all_candidates(const FaultVerdict& verdict)
     return std::accumulate(verdict.candidate_set.begin(), end, AxisMask{0}, std::bit_or<>{});
 }
 
+/// Each method has a unit of its own, in which its statistic means little to an operator; times the limit says how clear the case is.
+std::string statistic_text(const FaultVerdict& verdict)
+{
+    if (!(verdict.threshold > 0)) return fmt::format("statistic {:.3g}", verdict.statistic);
+    return fmt::format("statistic {:.3g} times its limit", verdict.statistic / verdict.threshold);
+}
+
 }  // namespace
 
 void VerdictEvents::report_changes(const FaultVerdict& verdict, const ClusterDescription& description, std::string_view reason,
@@ -39,9 +46,8 @@ void VerdictEvents::report_isolations(const FaultVerdict& verdict, const Cluster
         const std::string kinds = diagnoses_text(diagnosis, description, isolated);
         node_.report(
             verdict.adopted ? EventCode::adopted : EventCode::isolated, Severity::warning_high, identity, isolated,
-            fmt::format("{} {} since frame {}: statistic {:.4g}, limit {:.4g}{}{}", verdict.adopted ? "ADOPTED" : "ISOLATED",
-                        axis_names(description, isolated), verdict.excluded_from.earliest(isolated), verdict.statistic, verdict.threshold,
-                        kinds.empty() ? "" : "; ", kinds));
+            fmt::format("{} {} since frame {}: {}; {}", verdict.adopted ? "ADOPTED" : "ISOLATED", axis_names(description, isolated),
+                        verdict.excluded_from.earliest(isolated), kinds.empty() ? "disagrees with the others" : kinds, statistic_text(verdict)));
         if (verdict.detectable_remaining == 0)
             node_.report(EventCode::redundancy_exhausted, Severity::warning_high, identity, verdict.working_mask,
                          "redundancy is used up: a further fault cannot be told");
@@ -88,8 +94,7 @@ void VerdictEvents::report_state(const FaultVerdict& verdict, const ClusterDescr
         case VerdictState::suspect:
             report(EventCode::suspect, Severity::warning_low, verdict.suspect_mask,
                    !reason.empty() ? fmt::format("SUSPECT: {}", reason)
-                                   : fmt::format("SUSPECT {}: statistic {:.4g}, limit {:.4g}",
-                                                 axis_names(description, verdict.suspect_mask), verdict.statistic, verdict.threshold));
+                                   : fmt::format("SUSPECT {}: {}", axis_names(description, verdict.suspect_mask), statistic_text(verdict)));
             break;
         case VerdictState::warming_up:
             if (!reason.empty()) report(EventCode::blind, Severity::info, 0, fmt::format("WARMING_UP: {}", reason));

@@ -43,7 +43,7 @@ protected:
     }
 
     /// The next verdict, a second later: throttled events are not held back.
-    void report(VerdictState state, AxisMask isolated = 0, AxisMask provisional = 0)
+    void report(VerdictState state, AxisMask isolated = 0, AxisMask provisional = 0, const FaultDiagnosis& diagnosis = {})
     {
         clock_.set(clock_.steady_ns() + 1'500'000'000);
         FaultVerdict verdict;
@@ -53,7 +53,9 @@ protected:
         verdict.isolated_mask = isolated;
         verdict.excluded_from.exclude(isolated | provisional, 1);
         verdict.detectable_remaining = 1;
-        events_.report_changes(verdict, description_, "", FaultDiagnosis{});
+        verdict.statistic = 5e-5;
+        verdict.threshold = 2e-6;
+        events_.report_changes(verdict, description_, "", diagnosis);
         while (loop_.dispatch()) continue;
     }
 
@@ -103,6 +105,19 @@ TEST_F(Events, report_a_confirmed_axis_as_isolated_and_not_as_returned)
     EXPECT_THAT(codes(), ElementsAre(EventCode::isolated));
     report(VerdictState::healthy);
     EXPECT_THAT(codes(), ElementsAre(EventCode::readmitted));
+}
+
+TEST_F(Events, say_why_an_axis_is_isolated_and_how_clearly_without_a_unit)
+{
+    report(VerdictState::isolated, axis_1);
+    codes();
+    EXPECT_THAT(text_, HasSubstr(": disagrees with the others; statistic 25 times its limit"));
+    report(VerdictState::healthy);
+    FaultDiagnosis diagnosis;
+    diagnosis.diagnosis[1] = octet(Diagnosis::absent);
+    report(VerdictState::isolated, axis_1, 0, diagnosis);
+    codes();
+    EXPECT_THAT(text_, HasSubstr("axis 1: absent; statistic 25 times its limit"));
 }
 
 TEST_F(Events, report_saturation_without_naming_an_axis)
