@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -122,6 +123,45 @@ TEST_F(Surveyed, refuses_logs_of_different_motions_that_share_no_clock)
                                                            write("b.csv", log_of(0.01, 100, 5e6, 3.0, 3))}, {});
     ASSERT_TRUE(found);
     EXPECT_THAT(tie_clocks(*found).error(), AllOf(HasSubstr("a.csv"), HasSubstr("b.csv"), HasSubstr("same motion")));
+}
+
+/// Three instruments in the same rows, each with its own bias [deg/s], in a slow motion about all axes after a rest.
+std::string table_of_biased_instruments(unsigned seed, double pace, double late_s)
+{
+    std::mt19937 random(seed);
+    std::normal_distribution<double> bias(0.0, 1.0), noise(0.0, 0.1);
+    std::array<double, 9> biases;
+    for (double& one : biases) one = bias(random);
+    std::ostringstream text;
+    text << "time_s";
+    for (const char* name : {"a", "b", "c"})
+        for (const char* axis : {"x", "y", "z"}) text << ",imu_" << name << "_g" << axis << " [deg/s]";
+    text << '\n';
+    const auto moved = [&](double t, std::size_t axis) {
+        const double swing = std::clamp(t - 6, 0.0, 1.0);
+        return swing * (axis == 0 ? 30 * std::sin(0.7 * pace * t) : axis == 1 ? 20 * std::sin(1.1 * pace * t + 0.3) : 25 * std::sin(0.5 * pace * t));
+    };
+    for (int row = 0; row < 9000; ++row) {
+        const double t = 0.005 * row;
+        text << t;
+        for (std::size_t i = 0; i < 9; ++i) text << ',' << moved(i < 6 ? t : t - late_s, i % 3) + biases[i] + noise(random);
+        text << '\n';
+    }
+    return text.str();
+}
+
+TEST_F(Surveyed, takes_no_bias_for_an_offset_of_the_clock)
+{
+    for (const double pace : {1.0, 2.0, 3.0})
+        for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+            SCOPED_TRACE(testing::Message() << "pace " << pace << ", seed " << seed);
+            const Survey found = survey_of({write("table.csv", table_of_biased_instruments(seed, pace, 0.02))});
+            ASSERT_EQ(found.compared.size(), 3U);
+            EXPECT_NEAR(found.instruments[found.compared[1]].clock.offset_s, 0, 0.001);
+            const ClockFigures& late = found.instruments[found.compared[2]].clock;
+            EXPECT_TRUE(late.tied);
+            EXPECT_NEAR(late.offset_s, 0.02, 0.001);
+        }
 }
 
 TEST_F(Surveyed, ties_no_clocks_by_a_steady_turn)

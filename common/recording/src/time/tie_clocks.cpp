@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -26,9 +27,31 @@ constexpr std::size_t fewest_for_slope = 5;
 constexpr double least_gain = 0.9;          // placing samples must reduce the disagreement to this share
 
 using Profile = std::vector<double>;
+using Rate = std::array<double, 3>;
 
-/// Angle turned through up to a grid of times since the window's begin; NaN where the instrument has no sample.
-Profile angle_profile(const KeptWindow& window, const std::vector<std::int64_t>& time_ns, std::int64_t begin_ns)
+/// Mean rate of an instrument while another one of the same log was there too. Both turned alike meanwhile, so the sizes of what is left of
+/// the rates have the biases no more. These would move the tops: beside a slow motion a bias of 1 deg/s looks like 10 ms.
+Rate common_mean(const SurveyedInstrument& instrument, const SurveyedInstrument& other)
+{
+    Rate sum{};
+    double count = 0;
+    for (std::size_t i = 0; i < std::min(instrument.windows.size(), other.windows.size()); ++i) {
+        const KeptWindow& own = instrument.windows[i];
+        const KeptWindow& theirs = other.windows[i];
+        if (own.empty() || theirs.empty()) continue;
+        for (const KeptSample& sample : own) {
+            const auto& rate = sample.rate_rad_s;
+            if (sample.time_ns < theirs.front().time_ns || sample.time_ns > theirs.back().time_ns || !std::isfinite(rate[0] + rate[1] + rate[2])) continue;
+            for (std::size_t part = 0; part < 3; ++part) sum[part] += static_cast<double>(rate[part]);
+            ++count;
+        }
+    }
+    for (double& part : sum) part = count > 0 ? part / count : 0;
+    return sum;
+}
+
+/// Angle turned through, beyond a mean rate, up to a grid of times since the window's begin; NaN where the instrument has no sample.
+Profile angle_profile(const KeptWindow& window, const std::vector<std::int64_t>& time_ns, std::int64_t begin_ns, const Rate& mean)
 {
     const auto count = static_cast<std::size_t>(std::lround(window_s / grid_s));
     Profile angle(count + 1, std::nan(""));
@@ -37,7 +60,7 @@ Profile angle_profile(const KeptWindow& window, const std::vector<std::int64_t>&
         const double from_s = static_cast<double>(time_ns[i - 1] - begin_ns) * 1e-9;
         const double to_s = static_cast<double>(time_ns[i] - begin_ns) * 1e-9;
         const auto& rate = window[i].rate_rad_s;
-        const double speed = std::sqrt(rate[0] * rate[0] + rate[1] * rate[1] + rate[2] * rate[2]);
+        const double speed = std::hypot(static_cast<double>(rate[0]) - mean[0], static_cast<double>(rate[1]) - mean[1], static_cast<double>(rate[2]) - mean[2]);
         if (!(to_s > from_s) || to_s - from_s > 0.2 || !std::isfinite(speed)) continue;
         const double last = std::min(static_cast<double>(count), std::floor(to_s / grid_s));
         for (double point = std::ceil(std::max(0.0, from_s) / grid_s); point <= last; ++point)
@@ -149,14 +172,17 @@ public:
             SurveyedInstrument& instrument = survey_.instruments[i];
             if (own_clocks) note_own_clock(instrument);
         }
-        const Profiles reference = profiles(survey_.instruments[survey_.compared.front()], own_clocks);
         SurveyedInstrument& first = survey_.instruments[survey_.compared.front()];
+        const Profiles reference = profiles(first, own_clocks, {});
         first.clock.tied = true;
         first.clock.correlation = 1;
         for (const std::size_t i : survey_.compared) {
             SurveyedInstrument& instrument = survey_.instruments[i];
             if (&instrument == &first) continue;
-            if (auto tied = tie(reference, profiles(instrument, own_clocks), instrument); !tied) return tied;
+            const bool same_log = instrument.log == first.log;
+            const Profiles centred = same_log ? profiles(first, own_clocks, common_mean(first, instrument)) : Profiles{};
+            const Profiles own = profiles(instrument, own_clocks, same_log ? common_mean(instrument, first) : Rate{});
+            if (auto tied = tie(same_log ? centred : reference, own, instrument); !tied) return tied;
         }
         return {};
     }
@@ -168,7 +194,7 @@ private:
     }
 
     /// Windows are numbered from the first sample of their own log; profiles from the common origin.
-    Profiles profiles(const SurveyedInstrument& instrument, bool own_clock) const
+    Profiles profiles(const SurveyedInstrument& instrument, bool own_clock, const Rate& mean) const
     {
         Profiles made;
         const bool placed = own_clock && instrument.arrival_period_s;
@@ -177,7 +203,7 @@ private:
         KeptWindow part;
         std::vector<std::int64_t> part_times;
         const auto end_part = [&] {
-            const Profile angle = part.empty() ? Profile{} : angle_profile(part, part_times, begin_ns);
+            const Profile angle = part.empty() ? Profile{} : angle_profile(part, part_times, begin_ns, mean);
             made.smooth.push_back(rate_profile(angle, half_window));
             made.sharp.push_back(rate_profile(angle, 1));
             part.clear();
@@ -229,11 +255,11 @@ private:
     /// Sum over all instruments of 1 - correlation with the first one, without averaging, at the best lag.
     double disagreement(bool own_clocks) const
     {
-        const Profiles reference = profiles(survey_.instruments[survey_.compared.front()], own_clocks);
+        const Profiles reference = profiles(survey_.instruments[survey_.compared.front()], own_clocks, {});
         double sum = 0;
         for (std::size_t i = 1; i < survey_.compared.size(); ++i) {
             const SurveyedInstrument& instrument = survey_.instruments[survey_.compared[i]];
-            const Profiles other = profiles(instrument, own_clocks);
+            const Profiles other = profiles(instrument, own_clocks, {});
             sum += 1 - top_of(correlations(reference.sharp, other.sharp, 0, longest_lag(instrument))).correlation;
         }
         return sum;
