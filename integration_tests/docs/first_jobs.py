@@ -203,9 +203,9 @@ def job_demo(page):
     shutil.copy(CONFIGURATIONS / "demo.yaml", page.folder)
     with page.beside("quorient launch demo.yaml --set source.duration_s=120 --set source.faults=[] --set expect=null --duration 45") as launch:
         page.until("quorient health voter-1")
-        page.show("quorient status", "quorient inject axis=1,kind=scale,value=0.8", "sleep 1; quorient status | head -1")
-        page.show("quorient readmit --axis 1", "quorient inject --clear", "sleep 1; quorient readmit --axis 1", "sleep 1; quorient status | head -1")
-        page.show("quorient inject axis=G2,kind=tired", "quorient inject axis=9,kind=zero", "quorient injekt axis=1,kind=zero", "quorient status --unit 7 --seconds 1",
+        page.show("quorient status", "quorient inject axis=G2,kind=scale,value=0.8", "sleep 1; quorient status | head -1")
+        page.show("quorient readmit --axis 1", "quorient inject --clear", "sleep 1; quorient readmit --axis G2", "sleep 1; quorient status | head -1")
+        page.show("quorient inject axis=G2,kind=tired", "quorient inject axis=G9,kind=zero", "quorient inject axis=9,kind=zero", "quorient status --wach", "quorient injekt axis=1,kind=zero", "quorient status --unit 7 --seconds 1",
                   "quorient status --domain 43 --seconds 1")
         page.show("quorient launch demo.yaml --duration 5", "quorient record flight.csv --duration 2", "quorient record flight.csv --duration 2", "quorient health voter-1", "quorient health voter-3",
                   "quorient health voter-1 --domain 43")
