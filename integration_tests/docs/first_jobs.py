@@ -71,16 +71,16 @@ class Page:
         try:
             yield process
         finally:
-            if process.poll() is None:
+            closed = process.poll() is None  # the user closes that window
+            if closed:
                 process.terminate()
             process.wait(10)
             self.say("That window then shows:")
             print("```")
             self.answer(log.read_text())
-            print(f"[exit code {process.returncode}]" if process.returncode else "```", end="\n")
-            if process.returncode:
-                print("```")
-            print(flush=True)
+            if process.returncode and not closed:
+                print(f"[exit code {process.returncode}]")
+            print("```\n", flush=True)
 
     def until(self, command):
         """Waits, unseen, until a command succeeds."""
