@@ -5,6 +5,14 @@
 
 namespace quorient::fdi {
 
+namespace {
+
+/// Errors of the predictions are forgotten with this weight: the last sixteen or so count.
+constexpr double newest_weight = 1.0 / 16;
+constexpr double missed_sigmas = 3;
+
+}  // namespace
+
 std::string_view name(ModulusFallback fallback)
 {
     switch (fallback) {
@@ -88,6 +96,7 @@ void ExtrapolationDetector::observe(const Frame& frame)
     for (std::size_t k = 0; k < axis_count; ++k) triad_modulus_[k] = frame.triad_body[k].norm();
     predicted_ = learnt_ == modulus_.size();
     if (!predicted_) return;
+    observed_ = frame.identity;
     prediction_ = predict_modulus(modulus_, resolution());
     uncertainty_ = prediction_uncertainty(modulus_, resolution() / 2);  // what rounding takes at most
     working_triad_ = 0;
@@ -95,20 +104,37 @@ void ExtrapolationDetector::observe(const Frame& frame)
         if (distance(k) < distance(working_triad_)) working_triad_ = k;
 }
 
+void ExtrapolationDetector::forget()
+{
+    learnt_ = 0;
+    missed_ = 0;
+}
+
 void ExtrapolationDetector::learn(const Frame& frame)
 {
+    if (predicted_ && observed_ == frame.identity) {
+        const double missed = std::max(0.0, std::abs(prediction_.predicted - frame.body.norm()) - uncertainty_);
+        missed_ += newest_weight * (missed * missed - missed_);
+    }
     std::shift_left(modulus_.begin(), modulus_.end(), 1);
     modulus_.back() = frame.body.norm();
     learnt_ = std::min<unsigned>(learnt_ + 1, static_cast<unsigned>(modulus_.size()));
 }
 
-void ExtrapolationDetector::attribute(const Frame&, Assessment& assessment)
+/// What a triad's modulus may differ by from the prediction that is held for so many frames: a smooth motion leaves it with their square.
+double ExtrapolationDetector::allowance(unsigned horizon) const
+{
+    const double moved = std::abs(modulus_[3] - modulus_[2]) * (horizon - 1);
+    return margin_ + uncertainty_ + missed_sigmas * std::sqrt(missed_) * horizon * horizon + moved;
+}
+
+void ExtrapolationDetector::attribute(const Frame& frame, Assessment& assessment)
 {
     assessment.outcome = Outcome::isolated;
     assessment.isolated = left_out_by(working_triad_);
     assessment.add_candidate(assessment.isolated);
     for (std::size_t k = 0; k < axis_count; ++k) {
-        if (k == working_triad_ || distance(k) - distance(working_triad_) > margin_ + uncertainty_) continue;
+        if (k == working_triad_ || distance(k) - distance(working_triad_) > allowance(frame.horizon)) continue;
         assessment.add_candidate(left_out_by(k));
         assessment.outcome = Outcome::ambiguous;
     }
