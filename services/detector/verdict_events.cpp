@@ -26,6 +26,13 @@ std::string statistic_text(const FaultVerdict& verdict)
     return fmt::format("statistic {:.3g} times its limit", verdict.statistic / verdict.threshold);
 }
 
+std::string suspect_text(const FaultVerdict& verdict, const ClusterDescription& description)
+{
+    if (verdict.suspect_mask != 0) return axis_names(description, verdict.suspect_mask);
+    const AxisMask candidates = all_candidates(verdict);
+    return candidates == 0 ? "no axis yet" : fmt::format("one of {}", axis_names(description, candidates));
+}
+
 }  // namespace
 
 void VerdictEvents::report_changes(const FaultVerdict& verdict, const ClusterDescription& description, std::string_view reason,
@@ -94,7 +101,7 @@ void VerdictEvents::report_state(const FaultVerdict& verdict, const ClusterDescr
         case VerdictState::suspect:
             report(EventCode::suspect, Severity::warning_low, verdict.suspect_mask,
                    !reason.empty() ? fmt::format("SUSPECT: {}", reason)
-                                   : fmt::format("SUSPECT {}: {}", axis_names(description, verdict.suspect_mask), statistic_text(verdict)));
+                                   : fmt::format("SUSPECT {}: {}", suspect_text(verdict, description), statistic_text(verdict)));
             break;
         case VerdictState::warming_up:
             if (!reason.empty()) report(EventCode::blind, Severity::info, 0, fmt::format("WARMING_UP: {}", reason));

@@ -90,7 +90,7 @@ void SensorPublisher::tick()
     if (!publish(next_)) {
         const auto remarks = source_->remarks();
         node_.report(EventCode::goodbye, Severity::info, identity_of(frame_), 0,
-                     fmt::format("the source has ended{}{}", remarks.empty() ? "" : ": ", remarks));
+                     fmt::format("ended{}{}", remarks.empty() ? "" : ": ", remarks));
         end_timer_.set(now + linger_ns);
         return;
     }

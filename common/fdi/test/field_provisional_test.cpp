@@ -69,7 +69,10 @@ TEST_F(FieldProvisional, exclusion_begins_before_the_shock_and_ends_half_a_secon
             const AxisMask out = provisional_mask(verdict);
             ASSERT_EQ(verdict.isolated_mask, 0U);
             ASSERT_EQ(out & ~axes_of(axis / 3), 0U);
-            if (out == 0) continue;
+            if (out == 0) {
+                ASSERT_EQ(state_of(verdict), VerdictState::healthy) << "frame " << verdict.sequence << ": neither before nor after";
+                continue;
+            }
             ASSERT_EQ(state_of(verdict), VerdictState::provisional);
             ASSERT_LE(verdict.excluded_from[axis], onset) << "contaminated frames stay in the attitude";
             ASSERT_GE(verdict.excluded_from[axis] + 10, onset);

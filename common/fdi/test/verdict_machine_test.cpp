@@ -264,8 +264,19 @@ TEST_F(VerdictMachineTest, leaves_a_contradicted_axis_out_at_once_and_takes_it_b
     feed(healthy());
     EXPECT_EQ(provisional_mask(machine_.verdict()), 0U);
     EXPECT_EQ(machine_.verdict().working_mask, 0b111111U);
-    feed(healthy(), 2);
-    EXPECT_EQ(state(), VerdictState::healthy);
+    EXPECT_EQ(state(), VerdictState::healthy) << "an axis that returns is no longer suspect";
+}
+
+TEST_F(VerdictMachineTest, still_suspects_another_axis_when_one_returns)
+{
+    feed(contradicting(axis_1, next_), 20);
+    Assessment both = contradicting(axis_1, next_);
+    both.isolated |= axis_2;
+    feed(both);
+    feed(healthy());
+    EXPECT_EQ(provisional_mask(machine_.verdict()), 0U);
+    EXPECT_EQ(state(), VerdictState::suspect);
+    EXPECT_NE(machine_.verdict().suspect_mask & axis_2, 0U);
 }
 
 TEST_F(VerdictMachineTest, latches_what_was_left_out_from_where_it_was_left_out)

@@ -49,6 +49,7 @@ void Accusations::report(std::size_t m, AxisMask axes, std::uint64_t now, Instru
         assessment.outcome = Outcome::isolated;
         assessment.isolated |= axes;
         assessment.onset = std::min(assessment.onset, onset(m));
+        assessment.statistic = std::max(assessment.statistic, of_[m].certainty);
     } else if (!left_out(m, now) || !compared.has(m)) {
         return;
     }

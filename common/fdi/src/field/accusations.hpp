@@ -40,10 +40,12 @@ public:
     /// @returns whether this one comes and goes too often.
     bool leave_out(std::size_t m, std::uint64_t onset, std::uint64_t frames, std::uint64_t now, InstrumentSet compared);
 
-    void name(std::size_t m, std::uint64_t onset)
+    /// @param certainty  of the contradiction that proves it; reported until the member is excluded
+    void name(std::size_t m, std::uint64_t onset, double certainty)
     {
         of_[m].named = true;
         of_[m].onset = onset;
+        of_[m].certainty = certainty;
     }
 
     /// What is held against this member: a named one is isolated; it, and one of the comparison that is left out, is left out of the attitude.
@@ -62,6 +64,7 @@ private:
         bool named = false;                 ///< until it is excluded
         std::uint64_t left_out_until = 0;
         std::uint64_t onset = never;        ///< sequence, of the present contradiction or of the named fault
+        double certainty = 0;               ///< of the named fault
         std::array<std::uint64_t, most_returns> begun{};  ///< of the latest contradictions, ring
         std::size_t contradictions = 0;
     };

@@ -89,7 +89,7 @@ void FieldDetector::State::follow_fast_lane()
 
 void FieldDetector::State::name(std::size_t m, std::uint64_t onset, const field::Blame& blame)
 {
-    accusations_.name(m, onset);
+    accusations_.name(m, onset, certainty_);
     history_.begin_again(m);
     diagnostics_.accuse(m, blame);
     const auto misled = static_cast<std::uint64_t>(std::lround(field::misled_s / cluster_.interval_s));

@@ -71,7 +71,7 @@ void SkewedDetector::State::leave_out(const field::Suspicion& suspicion)
 
 void SkewedDetector::State::name(std::size_t axis, std::uint64_t onset, Diagnosis why)
 {
-    accusations_.name(axis, onset);
+    accusations_.name(axis, onset, certainty_);
     history_.begin_again(axis);
     accuse(axis, why);
     if (onset <= learning_from_ + static_cast<std::uint64_t>(std::lround(field::misled_s / cluster_.interval_s))) forget_learned();

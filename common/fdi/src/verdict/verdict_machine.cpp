@@ -188,6 +188,7 @@ void VerdictMachine::leave_out(const Assessment& assessment, AxisMask broken)
     const AxisMask asked = can ? (assessment.provisional | broken) & all_ & ~verdict_.isolated_mask : 0;
     const AxisMask left = all_ & ~verdict_.isolated_mask & ~asked;
     const AxisMask out = std::popcount(left) >= least_axes_ ? asked : 0;
+    forget_suspicion(provisional_mask(verdict_) & ~asked);
     end_provisional(~out);
     const std::uint64_t from = guarded(std::min(assessment.provisional_from, verdict_.sequence), settings_.onset_guard_frames);
     const AxisMask begins = out & ~provisional_mask(verdict_);
@@ -199,6 +200,13 @@ void VerdictMachine::leave_out(const Assessment& assessment, AxisMask broken)
 void VerdictMachine::end_provisional(AxisMask axes)
 {
     verdict_.excluded_from.readmit(provisional_mask(verdict_) & axes);
+}
+
+/// What was held against axes that return counts no more.
+void VerdictMachine::forget_suspicion(AxisMask returning)
+{
+    for (Evidence& evidence : window_)
+        if (evidence.outcome == Outcome::suspect && evidence.culprit != 0 && (evidence.culprit & ~returning) == 0) evidence = {};
 }
 
 void VerdictMachine::work_with_the_rest()

@@ -20,7 +20,7 @@ namespace quorient::fdi {
 /// - an isolated axis stays isolated until readmit(): no frame, gap, warm-up or new epoch clears it;
 /// - an axis that no explaining set of the last n frames contains is never blamed;
 /// - an axis that the method wants out provisionally, or that proves itself broken, is out in this verdict, unless fewer than three axes would
-///   be left; it is back as soon as neither is so, or latched;
+///   be left; it is back, and no longer suspect, as soon as neither is so, or latched;
 /// - every verdict is the complete state. Candidate sets are of axes beyond isolated_mask.
 ///
 /// Allocates nothing.
@@ -74,6 +74,7 @@ private:
     void latch(AxisMask axes, std::uint64_t onset);
     void leave_out(const Assessment& assessment, AxisMask broken);
     void end_provisional(AxisMask axes);
+    void forget_suspicion(AxisMask returning);
     void work_with_the_rest();
     void publish(const Evidence& newest, const Assessment& assessment);
     VerdictState publish_suspicion(const Evidence& suspicion);
