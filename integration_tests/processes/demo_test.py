@@ -1,4 +1,5 @@
 """The demos as a user starts them, and their twins without the fault."""
+import re
 import unittest
 import xml.etree.ElementTree
 
@@ -7,6 +8,8 @@ from integration_tests.harness.processes import CONFIGURATIONS, DATA, ROOT, Proc
 RECORDING = DATA / "mimu4444_carlsson/exp_1/data.bin"
 SOFT_FLIGHT = DATA / "field/cats_drone_soft_axis_1.csv"
 SOUND_FLIGHT = DATA / "field/cats_drone_healthy.csv"
+
+TRUE_GAIN_OF_G0_Z = 0.455  # of SOFT_FLIGHT: 0.44 to 0.47, whole flight against g1 and g2
 
 
 def words_of(picture, kind):
@@ -108,10 +111,12 @@ class FlightDemo(ProcessTest):
         for name, lane in summary["lanes"].items():
             self.assertEqual(lane["isolated"], [0, 1, 2], name)
             self.assertEqual(lane["working"], [3, 4, 5, 6, 7, 8], name)
+            self.assertAlmostEqual(float(re.search(r"g0 z: gain (\S+) ", lane["diagnosis"])[1]), TRUE_GAIN_OF_G0_Z, delta=0.03, msg=name)
 
     def test_names_nobody_on_a_sound_flight(self):
         for name, lane in self.fly(SOUND_FLIGHT)["lanes"].items():
             self.assertEqual(lane["isolated"], [], name)
+            self.assertEqual(lane["diagnosis"], "", name)
 
 
 if __name__ == "__main__":

@@ -144,6 +144,12 @@ void RunObserver::on_verdict(const FaultVerdict& verdict)
     lane->isolated_first = verdict.isolated_mask;
 }
 
+void RunObserver::on_diagnosis(const FaultDiagnosis& diagnosis)
+{
+    auto* lane = diagnosis.unit == system_.unit ? lane_of_detector(diagnosis.detector) : nullptr;
+    if (lane) lane->diagnosis = diagnosis;
+}
+
 void RunObserver::on_attitude(const AttitudeState& attitude)
 {
     auto* lane = attitude.unit == system_.unit ? lane_of(attitude.lane) : nullptr;

@@ -2,6 +2,7 @@
 
 #include "cli/json_output.hpp"
 #include "quorient/bus/settings.hpp"
+#include "quorient/messages/diagnosis_text.hpp"
 #include "quorient/messages/meaning.hpp"
 #include "quorient/messages/name.hpp"
 #include "quorient/messages/words.hpp"
@@ -34,6 +35,12 @@ std::string isolation_text(const evaluation::RunObserver& run, const evaluation:
     return fmt::format("isolated {} at {:.3f} s{}, {}", run.names_of(lane.isolated_first), run.time_s(*lane.isolated_at),
                        frames ? fmt::format(" ({} frame{} into the fault)", *frames, *frames == 1 ? "" : "s") : "",
                        triad_text(run, lane.triad_after));
+}
+
+/// What is wrong with the axes that the lane isolated, as far as it knows at the end.
+std::string diagnosis_of(const evaluation::RunObserver& run, const evaluation::LaneRecord& lane)
+{
+    return run.description() ? diagnoses_text(lane.diagnosis, *run.description(), lane.isolated_ever) : std::string{};
 }
 
 /// The axes that the expectation allows and demands.
@@ -76,9 +83,10 @@ std::string summary_text(const system::System& system, const evaluation::RunObse
     if (run.fault_began())
         text += fmt::format("fault    {} from {:.3f} s{}\n", run.names_of(run.faulty()), run.time_s(*run.fault_began()),
                             run.fault_ended() ? fmt::format(" to {:.3f} s", run.time_s(*run.fault_ended())) : "");
-    else text += "fault    none\n";
+    else text += fmt::format("fault    none{}\n", system.sensor.source.log ? " added to the log" : "");
     for (const auto& lane : run.lanes()) {
         text += fmt::format("lane {:<4}{:<11}{}\n", lane.name, bus::to_string(lane.vendor), isolation_text(run, lane));
+        if (const auto diagnosis = diagnosis_of(run, lane); !diagnosis.empty()) text += fmt::format("{:20}{}\n", "", diagnosis);
         text += fmt::format("{:20}attitude error {}; {} frames lost\n", "", error_text(lane.errors),
                             run.truth_frames() - std::min(lane.frames, run.truth_frames()));
     }
@@ -114,6 +122,7 @@ nlohmann::ordered_json summary_json(const system::System& system, const evaluati
         entry["frames_to_isolation"] = nullptr;
         if (const auto frames = run.frames_to_isolation(lane)) entry["frames_to_isolation"] = *frames;
         entry["working"] = cli::axes_json(lane.triad_after);
+        entry["diagnosis"] = diagnosis_of(run, lane);
         entry["attitude"] = errors_json(lane.errors);
     }
     json["voted"] = {{"frames", run.voted().frames},

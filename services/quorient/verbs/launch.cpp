@@ -177,6 +177,7 @@ public:
         loop_.on(bus.subscribe(bus::topics::cluster), [this](const ClusterDescription& m) { observer_.on_description(m); });
         loop_.on(bus.subscribe(bus::topics::truth), [this](const TruthState& m) { observer_.on_truth(m); });
         loop_.on(bus.subscribe(bus::topics::verdict), [this](const FaultVerdict& m) { observer_.on_verdict(m); });
+        loop_.on(bus.subscribe(bus::topics::diagnosis), [this](const FaultDiagnosis& m) { observer_.on_diagnosis(m); });
         loop_.on(bus.subscribe(bus::topics::frame), [this](const SensorFrame& m) { observer_.on_frame(m); });
         loop_.on(bus.subscribe(bus::topics::attitude), [this](const AttitudeState& m) { observer_.on_attitude(m); });
         loop_.on(bus.subscribe(bus::topics::voter_output), [this](const VotedAttitude& m) { observer_.on_voted(m); });

@@ -5,6 +5,7 @@
 #include "quorient/attitude/integrator.hpp"
 #include "quorient/messages/attitude_state.hpp"
 #include "quorient/messages/cluster_description.hpp"
+#include "quorient/messages/fault_diagnosis.hpp"
 #include "quorient/messages/fault_verdict.hpp"
 #include "quorient/messages/sensor_frame.hpp"
 #include "quorient/messages/truth_state.hpp"
@@ -36,6 +37,7 @@ struct LaneRecord {
     std::string name;
     Vendor vendor = Vendor::unknown;
     FaultVerdict verdict;
+    FaultDiagnosis diagnosis;  ///< the latest
     AttitudeState attitude;
     bool heard = false;
     std::optional<Identity> isolated_at;  ///< first verdict that isolated anything after the truth's fault began
@@ -73,6 +75,7 @@ public:
     void on_frame(const SensorFrame& frame);
     void on_truth(const TruthState& truth);
     void on_verdict(const FaultVerdict& verdict);
+    void on_diagnosis(const FaultDiagnosis& diagnosis);
     void on_attitude(const AttitudeState& attitude);
     void on_voted(const VotedAttitude& voted);
     /// The publisher has ended in order: the level that falls behind its last frame is no fault.
