@@ -79,6 +79,25 @@ INSTANTIATE_TEST_SUITE_P(Of, SoundLog,
                              return name;
                          });
 
+/// Here a faulty instrument looked like noise of the two sound ones, one of which was blamed.
+TEST(RocketLog, blames_no_other_instrument_for_a_sign_that_changes_in_the_tumble)
+{
+    const auto file = data_dir() / "field/cats_rocket_healthy_long.csv";
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there: set QUORIENT_DATA_DIR to the folder of recordings";
+    const auto log = load_field_log(file);
+    ASSERT_TRUE(log) << log.error();
+    constexpr std::size_t frames_per_s = 100;
+    for (const double onset_s : {14.0, 14.23, 14.27, 18.8, 18.9, 18.95, 19.0, 19.1}) {
+        const Injection injection{.fault = {.name = "sign", .spoil = Spoil::sign, .kind = Diagnosis::sign},
+                                  .instrument = 0,
+                                  .axis = 1,
+                                  .onset = static_cast<std::size_t>(onset_s * frames_per_s)};
+        const FaultRun run = play_fault(*log, injection, 1, monitor_on(*log));
+        EXPECT_EQ(run.wrong, 0U) << onset_s;
+        EXPECT_TRUE(std::isfinite(run.latched_s)) << onset_s;
+    }
+}
+
 class SoftAxis : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(SoftAxis, of_a_real_board_is_named_with_its_gain_and_no_other_instrument)

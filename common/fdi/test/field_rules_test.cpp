@@ -3,6 +3,8 @@
 #include "field_scene.hpp"
 
 #include <gtest/gtest.h>
+#include <algorithm>
+#include <array>
 
 // Each rule of the field detector switched off: in which scene it is missed. The whole table: with all rules the scene ends well, without
 // the rule it does not.
@@ -110,6 +112,22 @@ TEST(FieldRules, noise_of_the_others_judges_a_faulty_instrument_that_would_hide_
     const Scene scene{[](std::uint64_t seed) { return spoiled(seed, from_onset([](auto& rates) { rates[4] -= 60; })); }, 16, axes_of(1)};
     EXPECT_LE(play_all(scene).named_delay, 50U);
     EXPECT_GT(play_all(scene, &FieldRules::leave_one_out).named_delay, 50U);
+}
+
+/// Instrument 1 repeats each second measurement: a fault that looks like noise of its neighbours.
+TEST(FieldRules, of_three_the_noise_of_the_sound_pair_judges_one_at_half_rate)
+{
+    const Scene scene{[](std::uint64_t seed) {
+                          return spoiled(seed, [last = std::array<double, 3>{}](std::uint64_t sequence, FieldScene::Rates& rates) mutable {
+                              const auto first = rates.begin() + 3;
+                              if (sequence >= onset && sequence % 2 == 1) std::ranges::copy(last, first);
+                              std::copy_n(first, last.size(), last.begin());
+                          });
+                      },
+                      32, axes_of(1)};
+    const Outcomes outcomes = play_all(scene);
+    EXPECT_EQ(outcomes.named_faulty, seeds);
+    EXPECT_EQ(outcomes.named_sound, 0U);
 }
 
 TEST(FieldRules, clipping_lets_one_sample_of_full_scale_pass_soon)

@@ -68,7 +68,9 @@ Suspicions MatchedFilters::examine(const WindowSums& sums, const WindowSums* low
     return found;
 }
 
-inline MatchedFilters::Contrast MatchedFilters::contrast_of(const Window& window, const PerInstrument& deviation, const PerInstrument& own_noise,
+/// The noise of the others comes from their own. Of two others that is known only from pairs with the accused, whose fault may look like their
+/// noise; where no shock decides, that of their pair stands for it.
+inline MatchedFilters::Contrast MatchedFilters::contrast_of(const Window& window, const PerInstrument& deviation, const FilterSums& sums,
                                                      std::size_t m) const
 {
     Contrast contrast{};
@@ -79,13 +81,14 @@ inline MatchedFilters::Contrast MatchedFilters::contrast_of(const Window& window
     for (std::size_t j = 0; j < count_; ++j) {
         if (j == m || !window.compared.has(j)) continue;
         mean += deviation[j] / n;
-        noise += own_noise[j];
+        noise += sums.noise[j];
     }
     double squares = 0;
     for (std::size_t j = 0; j < count_; ++j)
         if (j != m && window.compared.has(j)) squares += (deviation[j] - mean) * (deviation[j] - mean);
     contrast.difference = deviation[m] - mean;
-    contrast.variance = own_noise[m] + noise / (n * n);
+    const bool by_pair = count_ == 3 && windows_.is_long(window.frames);
+    contrast.variance = sums.noise[m] + (by_pair ? sums.of_pair_without(m) / n : noise / (n * n));
     contrast.scatter = std::sqrt(squares / (n - 1));
     return contrast;
 }
@@ -109,7 +112,7 @@ void MatchedFilters::examine(const Window& window, Filter filter, Suspicions& fo
     for (std::size_t m = 0; m < count_; ++m) {
         if (!window.compared.has(m)) continue;
         if (!window.lasting && rules_.smallest_angle && !matters(window, m)) continue;  // nothing of it would count: most windows end here
-        Contrast contrast = contrast_of(window, deviation, sums.noise, m);
+        Contrast contrast = contrast_of(window, deviation, sums, m);
         contrast.variance += allowance * (1 + 1 / static_cast<double>(contrast.others));
         double certain = certainty(contrast, filter, window.lasting);
         if (window.low_passed != nullptr && window.lasting && filter != Filter::bias && certain > low_passed_share) {
@@ -144,7 +147,7 @@ inline bool MatchedFilters::matters(const Window& window, std::size_t m) const
 double MatchedFilters::agreeing(const Window& window, Filter filter, std::size_t m, double certainty_of_all, bool positive) const
 {
     const FilterSums& low = window.low_passed->filter[static_cast<std::size_t>(filter)];
-    Contrast contrast = contrast_of(window, low.deviation, low.noise, m);
+    Contrast contrast = contrast_of(window, low.deviation, low, m);
     if ((contrast.difference > 0) != positive) return 0;
     contrast.variance += window.learning.allowance(window.component, low.regressors) * (1 + 1 / static_cast<double>(contrast.others));
     return std::min(certainty_of_all, certainty(contrast, filter, true) / low_passed_share);

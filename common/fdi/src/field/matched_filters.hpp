@@ -12,7 +12,7 @@ namespace quorient::fdi::field {
 ///
 ///   C = |D| / ( zeta sqrt( Phi'(P + F)Phi (1 + 1/n_o) + N_m + sum N_j / n_o^2 ) + rho S_o ),
 ///
-/// Phi the sums of w t phi, N of the noise, S_o the others' own scatter in this very window: they must agree among themselves to accuse one.
+/// Phi the sums of w t phi, N of the noise (of two others: of their pair, in windows of 0.84 s or more), S_o the others' own scatter in this very window: they must agree among themselves to accuse one.
 ///
 /// A contradiction lasts if three of the four quarters of a window of 0.4 s or more show it, and, in windows shorter than 0.84 s, if it is there in
 /// the newest frames and was there 0.32 s before: a shock of up to 0.3 s never lasts.
@@ -35,7 +35,7 @@ private:
     struct Window;
     struct Contrast;
 
-    Contrast contrast_of(const Window& window, const PerInstrument& deviation, const PerInstrument& own_noise, std::size_t m) const;
+    Contrast contrast_of(const Window& window, const PerInstrument& deviation, const FilterSums& sums, std::size_t m) const;
     double certainty(const Contrast& contrast, Filter filter, bool lasting) const;
     bool may_pass(const Window& window, Filter filter, std::size_t m) const;
     void examine(const Window& window, Filter filter, Suspicions& found) const;

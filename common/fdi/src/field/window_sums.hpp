@@ -27,7 +27,11 @@ constexpr Parameter parameter_of(Filter filter, std::size_t component)
 struct FilterSums {
     Parameters regressors = Parameters::Zero();  ///< w t phi: what a unit error of each parameter would contribute
     PerInstrument deviation{};                   ///< w t d_m
-    PerInstrument noise{};                       ///< w^2 t^2 V_m
+    PerInstrument noise{};                       ///< w^2 t^2 V_m; of three instruments, the places behind them hold of_pair_without()
+
+    /// w^2 t^2 V of the pair of the other two, where three instruments are compared.
+    double& of_pair_without(std::size_t m) { return noise[3 + m]; }
+    double of_pair_without(std::size_t m) const { return noise[3 + m]; }
 
     FilterSums& operator+=(const FilterSums& other)
     {

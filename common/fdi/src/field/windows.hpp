@@ -42,6 +42,8 @@ public:
     /// What latches comes from windows of this length at least: no shock is so long.
     bool is_lasting(std::size_t window) const { return window >= lock_; }
     bool is_too_long(std::size_t window) const { return is_lasting(window) && seconds(window) > longest_window_s; }
+    /// No shock gives a window of this length its shape.
+    bool is_long(std::size_t window) const { return seconds(window) >= long_s; }
     double seconds(std::size_t window) const { return static_cast<double>(window) * interval_s_; }
 
     /// A few frames that hold most of a window's weight are no window.
@@ -102,12 +104,12 @@ public:
     template <class Total, class Energy>
     bool persists(std::size_t window, Total total, Energy energy) const
     {
-        constexpr double long_s = 0.84;
-        return steady(window, total) && (seconds(window) >= long_s || spans(window, total, energy));
+        return steady(window, total) && (is_long(window) || spans(window, total, energy));
     }
 
 private:
     static constexpr double lock_s = 0.40;
+    static constexpr double long_s = 0.84;
     static constexpr double longest_window_s = 8.2;
 
     /// The newest frames, and those of 0.32 s ago, contradict at least half as much as the whole window.
