@@ -24,7 +24,11 @@ namespace {
 using foreign::Sample;
 using foreign::Wish;
 using SteadyClock = std::chrono::steady_clock;
-constexpr auto patience = std::chrono::seconds{10};
+constexpr std::chrono::milliseconds patience{10'000};
+
+/// Best effort may lose samples on a busy machine, which is no error: so many bursts are sent until one arrives whole.
+constexpr std::uint64_t best_effort_bursts = 10;
+constexpr std::chrono::milliseconds patience_for_a_burst{1000};
 
 enum class Case { plain, late, late_volatile, instances, late_instances, silent, other_domain };
 
@@ -160,9 +164,9 @@ private:
     EndpointStatus our_status() { return publisher_ ? publisher_->status() : subscription_->status(); }
 
     template <class Condition>
-    bool eventually(Condition condition)
+    bool eventually(Condition condition, std::chrono::milliseconds within = patience)
     {
-        const auto deadline = SteadyClock::now() + patience;
+        const auto deadline = SteadyClock::now() + within;
         while (!condition()) {
             if (SteadyClock::now() > deadline) return false;
             bus_->wait(2'000'000);
@@ -206,8 +210,14 @@ private:
         if (!history && !warm_up(writing, reading)) return "matches, delivers nothing";
         const std::uint64_t first = history ? scenario.kind == Case::late_instances ? 8 : 0 : present;
         const std::uint64_t count = scenario.kind == Case::late_instances ? 2 : 10;
-        if (!history) send(writing, units, first, count);
-        return judge(reading, units, first, count, history ? "delivers the history" : "delivers");
+        if (history) return judge(reading, units, first, count, "delivers the history", patience);
+        const bool may_lose = !scenario.writer.reliable || !scenario.reader.reliable;
+        std::string result;
+        for (std::uint64_t burst = 0; burst < (may_lose ? best_effort_bursts : 1) && result != "delivers"; ++burst) {
+            send(writing, units, first + burst * count, count);
+            result = judge(reading, units, first + burst * count, count, "delivers", may_lose ? patience_for_a_burst : patience);
+        }
+        return result;
     }
 
     /// Both sides report a match shortly before the match is complete. A volatile reader may miss samples until then, which is no error.
@@ -222,7 +232,8 @@ private:
     }
 
     /// Exactly these samples of every unit, in order, among what was sent for the purpose.
-    std::string judge(const Side& reading, std::uint32_t units, std::uint64_t first, std::uint64_t count, const char* success)
+    std::string judge(const Side& reading, std::uint32_t units, std::uint64_t first, std::uint64_t count, const char* success,
+                      std::chrono::milliseconds within)
     {
         std::map<std::uint32_t, std::vector<std::uint64_t>> got;
         const auto complete = [&] {
@@ -234,7 +245,7 @@ private:
             for (const auto& [unit, sequences] : got) samples += sequences.size();
             return samples >= units * count;
         };
-        if (!eventually(complete)) return fmt::format("delivers too little: {} instances", got.size());
+        if (!eventually(complete, within)) return fmt::format("delivers too little: {} instances", got.size());
         for (const auto& [unit, sequences] : got) {
             for (std::size_t i = 0; i < sequences.size(); ++i) {
                 if (sequences.size() != count || sequences[i] != first + i) return fmt::format("unit {}: other samples than meant", unit);
