@@ -9,7 +9,7 @@ RECORDING = DATA / "mimu4444_carlsson/exp_1/data.bin"
 SOFT_FLIGHT = DATA / "field/cats_drone_soft_axis_1.csv"
 SOUND_FLIGHT = DATA / "field/cats_drone_healthy.csv"
 
-TRUE_GAIN_OF_G0_Z = 0.455  # of SOFT_FLIGHT: 0.44 to 0.47, whole flight against g1 and g2
+TRUE_GAIN_OF_G0_Z = (0.44, 0.47)  # of SOFT_FLIGHT, whole flight against g1 and g2
 
 
 def words_of(picture, kind):
@@ -111,7 +111,8 @@ class FlightDemo(ProcessTest):
         for name, lane in summary["lanes"].items():
             self.assertEqual(lane["isolated"], [0, 1, 2], name)
             self.assertEqual(lane["working"], [3, 4, 5, 6, 7, 8], name)
-            self.assertAlmostEqual(float(re.search(r"g0 z: gain (\S+) ", lane["diagnosis"])[1]), TRUE_GAIN_OF_G0_Z, delta=0.03, msg=name)
+            gain = float(re.search(r"g0 z: gain (\S+) ", lane["diagnosis"])[1])
+            self.assertTrue(TRUE_GAIN_OF_G0_Z[0] - 0.03 <= gain <= TRUE_GAIN_OF_G0_Z[1] + 0.03, f"{name}: {gain}")
 
     def test_names_nobody_on_a_sound_flight(self):
         for name, lane in self.fly(SOUND_FLIGHT)["lanes"].items():

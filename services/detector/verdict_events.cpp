@@ -33,6 +33,14 @@ std::string suspect_text(const FaultVerdict& verdict, const ClusterDescription& 
     return candidates == 0 ? "no axis yet" : fmt::format("one of {}", axis_names(description, candidates));
 }
 
+/// Why these axes are isolated. Of those that another detector has isolated this one has no statistic.
+std::string reason_of(const FaultVerdict& verdict, const ClusterDescription& description, AxisMask isolated, const FaultDiagnosis& diagnosis)
+{
+    const std::string kinds = diagnoses_text(diagnosis, description, isolated);
+    if (verdict.adopted) return kinds.empty() ? "another detector has isolated it" : fmt::format("another detector has isolated it; {}", kinds);
+    return fmt::format("{}; {}", kinds.empty() ? "disagrees with the others" : kinds, statistic_text(verdict));
+}
+
 }  // namespace
 
 void VerdictEvents::report_changes(const FaultVerdict& verdict, const ClusterDescription& description, std::string_view reason,
@@ -50,11 +58,9 @@ void VerdictEvents::report_isolations(const FaultVerdict& verdict, const Cluster
     const auto identity = identity_of(verdict);
     const AxisMask isolated = verdict.isolated_mask & ~last_.isolated_mask;
     if (isolated != 0) {
-        const std::string kinds = diagnoses_text(diagnosis, description, isolated);
-        node_.report(
-            verdict.adopted ? EventCode::adopted : EventCode::isolated, Severity::warning_high, identity, isolated,
-            fmt::format("{} {} since frame {}: {}; {}", verdict.adopted ? "ADOPTED" : "ISOLATED", axis_names(description, isolated),
-                        verdict.excluded_from.earliest(isolated), kinds.empty() ? "disagrees with the others" : kinds, statistic_text(verdict)));
+        node_.report(verdict.adopted ? EventCode::adopted : EventCode::isolated, Severity::warning_high, identity, isolated,
+                     fmt::format("{} {} since frame {}: {}", verdict.adopted ? "ADOPTED" : "ISOLATED", axis_names(description, isolated),
+                                 verdict.excluded_from.earliest(isolated), reason_of(verdict, description, isolated, diagnosis)));
         if (verdict.detectable_remaining == 0)
             node_.report(EventCode::redundancy_exhausted, Severity::warning_high, identity, verdict.working_mask,
                          "redundancy is used up: a further fault cannot be told");

@@ -10,15 +10,10 @@
 
 namespace quorient::runtime {
 
-namespace {
-
-/// Throws nothing: where stderr cannot be written, nobody is left to read it.
 void say(std::string_view text)
 {
     std::fputs((std::string(text) + '\n').c_str(), stderr);
 }
-
-}  // namespace
 
 void start_log()
 {

@@ -35,6 +35,13 @@ public:
 
     /// The first frame that may be published, and the one after `sequence`.
     std::optional<std::uint64_t> first() const { return timeline_.next_open(timeline_.next()); }
+
+    /// When the first of them was received.
+    std::optional<std::int64_t> waiting_since_ns() const
+    {
+        const auto waiting = first();
+        return waiting ? std::optional(timeline_.due_ns(*waiting)) : std::nullopt;
+    }
     std::optional<std::uint64_t> after(std::uint64_t sequence) const { return timeline_.next_open(sequence + 1); }
 
     Ballot ballot(std::uint64_t sequence, LaneIndex wanted, LaneIndex current, std::int64_t now_ns) const;

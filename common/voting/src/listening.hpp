@@ -22,7 +22,7 @@ public:
     enum class Delay {
         none,   ///< Nothing to listen for. After a short delay no lane is blamed, and no frame's patience ends, before the queues are read.
         pause,  ///< Another voter may be about to take over: this one listens until its queues are read.
-        absence,  ///< Another voter may have taken over: the same, and the right to write `voted` is lost.
+        absence,  ///< Another voter may have taken over: the same, and the right to write `voted` is lost unless nobody did.
     };
 
     /// What this voter was among the voters before the delay.
@@ -46,6 +46,9 @@ public:
 
     /// To be asked while listening. @param newest  newest frame received; none before the first one.
     Progress progress(const std::optional<Identity>& newest, const OtherVoters& others, std::int64_t now_ns);
+
+    /// Frames that came before that have been published by whoever runs.
+    std::int64_t unanswered_ns() const { return durations_.lease_ns / 2; }
 
     /// A voter runs at least twice in a lease, so that it notices its own delays.
     std::int64_t look_again_ns(std::int64_t now_ns) const { return now_ns + std::max<std::int64_t>(1, durations_.lease_ns / 2); }

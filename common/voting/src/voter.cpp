@@ -151,14 +151,15 @@ void Voter::end_listening()
     if (farthest != nullptr) adopt(farthest->newest());
 }
 
-/// Another voter that runs would have published the frames that have been here for a lease. It may have been one frame ahead when this one was
-/// stopped.
+/// Another voter that runs would have published the frames that have been here for half a lease. It may have been one frame ahead when this one
+/// was stopped.
 bool Voter::nobody_took_over() const
 {
-    const std::optional<Identity> newest = frames_->newest();
+    if (!others_->exist()) return true;
     const Identity mine = output_->identity();
-    const auto unanswered = static_cast<std::uint64_t>(settings_->lease_s / settings_->interval_s);
-    return newest && newest->epoch == mine.epoch && newest->sequence >= mine.sequence + unanswered && others_->reached().identity <= Identity{mine.epoch, mine.sequence + 1};
+    const std::optional<std::int64_t> since_ns = frames_->waiting_since_ns();
+    const bool unanswered = since_ns && *now_ns_ - *since_ns >= listening_->unanswered_ns();
+    return unanswered && frames_->newest()->epoch == mine.epoch && others_->reached().identity <= Identity{mine.epoch, mine.sequence + 1};
 }
 
 /// In order: a frame is published before any later one. Frames of which only excluded lanes delivered a sample are passed over with the

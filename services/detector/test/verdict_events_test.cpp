@@ -19,6 +19,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 constexpr AxisMask axis_1 = 0b0010;
 
@@ -55,6 +56,7 @@ protected:
         verdict.detectable_remaining = 1;
         verdict.statistic = 5e-5;
         verdict.threshold = 2e-6;
+        verdict.adopted = adopted_ ? 1 : 0;
         events_.report_changes(verdict, description_, "", diagnosis);
         while (loop_.dispatch()) continue;
     }
@@ -70,6 +72,7 @@ protected:
     }
 
     std::string text_;  ///< of the last event that codes() has returned
+    bool adopted_ = false;  ///< the next verdicts are another detector's
 
 private:
     bus::LocalHub hub_;
@@ -118,6 +121,16 @@ TEST_F(Events, say_why_an_axis_is_isolated_and_how_clearly_without_a_unit)
     report(VerdictState::isolated, axis_1, 0, diagnosis);
     codes();
     EXPECT_THAT(text_, HasSubstr(" 1: absent; statistic 25 times its limit"));
+}
+
+TEST_F(Events, state_no_statistic_of_an_isolation_that_another_detector_has_made)
+{
+    adopted_ = true;
+    report(VerdictState::isolated, axis_1);
+    EXPECT_THAT(codes(), ElementsAre(EventCode::adopted));
+    EXPECT_THAT(text_, HasSubstr("ADOPTED"));
+    EXPECT_THAT(text_, HasSubstr("another detector has isolated it"));
+    EXPECT_THAT(text_, Not(HasSubstr("statistic")));
 }
 
 TEST_F(Events, report_saturation_without_naming_an_axis)

@@ -1,6 +1,7 @@
 #include "program.hpp"
 
 #include "quorient/configuration/suggestion.hpp"
+#include "quorient/runtime/log.hpp"
 #include "quorient/runtime/options.hpp"
 
 #include <fmt/format.h>
@@ -283,19 +284,13 @@ std::vector<std::string> Program::verbs() const
 
 namespace {
 
-/// On stderr. Where that cannot be written either (both in one closed pipe), nobody is left to read it.
-void say(const std::string& text)
-{
-    std::fputs((text + '\n').c_str(), stderr);
-}
-
 /// Sees that what was printed has left. @returns the exit code, `refused` if it has not.
 int with_output_written(int exit_code)
 {
     errno = 0;
     const bool flushed = std::fflush(stdout) == 0 && static_cast<bool>(std::cout.flush());
     if (flushed && std::ferror(stdout) == 0) return exit_code;
-    say(fmt::format("standard output cannot be written{}", errno != 0 ? fmt::format(": {}", std::strerror(errno)) : ""));
+    runtime::say(fmt::format("standard output cannot be written{}", errno != 0 ? fmt::format(": {}", std::strerror(errno)) : ""));
     return ExitCode::refused;
 }
 
@@ -331,7 +326,7 @@ std::optional<std::string> unknown_word(const CLI::App& app, const std::vector<s
 int Program::run_verb(std::vector<std::string> arguments)
 {
     if (const auto problem = unknown_word(*app_, verbs(), arguments)) {
-        say(*problem);
+        runtime::say(*problem);
         return ExitCode::refused;
     }
     try {
@@ -343,7 +338,7 @@ int Program::run_verb(std::vector<std::string> arguments)
     } catch (const CLI::ParseError& error) {
         return app_->exit(error) == 0 ? ExitCode::done : ExitCode::refused;
     } catch (const std::system_error& error) {  // of a file or of standard output
-        say(error.what());
+        runtime::say(error.what());
         return ExitCode::refused;
     }
     return ExitCode::done;

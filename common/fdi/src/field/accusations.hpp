@@ -40,7 +40,7 @@ public:
     /// @returns whether this one comes and goes too often.
     bool leave_out(std::size_t m, std::uint64_t onset, std::uint64_t frames, std::uint64_t now, InstrumentSet compared);
 
-    /// @param certainty  of the contradiction that proves it; reported until the member is excluded
+    /// @param certainty  the largest of the frame in which it is named; reported until the member is excluded
     void name(std::size_t m, std::uint64_t onset, double certainty)
     {
         of_[m].named = true;

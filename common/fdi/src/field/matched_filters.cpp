@@ -68,8 +68,8 @@ Suspicions MatchedFilters::examine(const WindowSums& sums, const WindowSums* low
     return found;
 }
 
-/// The noise of the others comes from their own. Of two others that is known only from pairs with the accused, whose fault may look like their
-/// noise; where no shock decides, that of their pair stands for it.
+/// The noise of the others comes from their own. In an array of three that is known only from pairs with the accused, whose fault may look like
+/// their noise; where no shock decides, that of their pair stands for it.
 inline MatchedFilters::Contrast MatchedFilters::contrast_of(const Window& window, const PerInstrument& deviation, const FilterSums& sums,
                                                      std::size_t m) const
 {

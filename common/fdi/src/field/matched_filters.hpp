@@ -12,7 +12,8 @@ namespace quorient::fdi::field {
 ///
 ///   C = |D| / ( zeta sqrt( Phi'(P + F)Phi (1 + 1/n_o) + N_m + sum N_j / n_o^2 ) + rho S_o ),
 ///
-/// Phi the sums of w t phi, N of the noise (of two others: of their pair, in windows of 0.84 s or more), S_o the others' own scatter in this very window: they must agree among themselves to accuse one.
+/// Phi the sums of w t phi, N of the noise (in an array of three: of the two others' pair, in windows of 0.84 s or more), S_o the others' own
+/// scatter in this very window: they must agree among themselves to accuse one.
 ///
 /// A contradiction lasts if three of the four quarters of a window of 0.4 s or more show it, and, in windows shorter than 0.84 s, if it is there in
 /// the newest frames and was there 0.32 s before: a shock of up to 0.3 s never lasts.

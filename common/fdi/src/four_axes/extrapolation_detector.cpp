@@ -108,6 +108,7 @@ void ExtrapolationDetector::forget()
 {
     learnt_ = 0;
     missed_ = 0;
+    observed_ = {};  // a prediction that was held is no measure of the next ones
 }
 
 void ExtrapolationDetector::learn(const Frame& frame)

@@ -47,9 +47,9 @@ double prediction_uncertainty(const std::array<double, 4>& moduli, double resolu
 /// the vector without changing its length are invisible, and a nearly constant modulus makes the prediction noise. Where the next
 /// triad is nearer than settings.margin [unit of z] to the best, both axes are candidates; the default margin is what the bound
 /// lets a healthy modulus differ by. To it comes the uncertainty of the prediction itself, which the paper does not ask for: without
-/// it 34 of 1400 soft faults (x 0.8) at random times of the paper's motion named a healthy axis within six frames, with it none. A
-/// motion that is no sum of two exponentials adds what the predictions of the healthy frames before missed beyond their uncertainty, and how far
-/// the modulus moves while the prediction is held. 672 in place of 1017 are named in that time, the others are ambiguous first.
+/// it 34 of 1400 soft faults (x 0.8) at random times of the paper's motion named a healthy axis within six frames, with it none. To it
+/// also come what the predictions of the last healthy frames missed beyond their uncertainty, times the square of the frames for which the
+/// prediction is held, and how far the modulus moves meanwhile: not every motion is a sum of two exponentials. 672 in place of 1017 are named in that time, the others are ambiguous first.
 class ExtrapolationDetector final : public FourAxisDetector {
 public:
     static tl::expected<std::unique_ptr<ExtrapolationDetector>, std::string> make(const DetectorSettings& settings,

@@ -20,7 +20,8 @@ namespace quorient::fdi {
 /// - an isolated axis stays isolated until readmit(): no frame, gap, warm-up or new epoch clears it;
 /// - an axis that no explaining set of the last n frames contains is never blamed;
 /// - an axis that the method wants out provisionally, or that proves itself broken, is out in this verdict, unless fewer than three axes would
-///   be left; it is back, and no longer suspect, as soon as neither is so, or latched;
+///   be left; it is back as soon as neither is so, or latched. What the method held against it counts no more then; a frame that found it broken
+///   counts until it leaves the n;
 /// - every verdict is the complete state. Candidate sets are of axes beyond isolated_mask.
 ///
 /// Allocates nothing.
