@@ -7,8 +7,8 @@ namespace quorient::fdi {
 
 namespace {
 
-/// Errors of the predictions are forgotten with this weight: the last sixteen or so count.
-constexpr double newest_weight = 1.0 / 16;
+/// About so many errors of predictions count.
+constexpr unsigned remembered_errors = 16;
 constexpr double missed_sigmas = 3;
 
 }  // namespace
@@ -108,6 +108,7 @@ void ExtrapolationDetector::forget()
 {
     learnt_ = 0;
     missed_ = 0;
+    measured_ = 0;
     observed_ = {};  // a prediction that was held is no measure of the next ones
 }
 
@@ -115,7 +116,8 @@ void ExtrapolationDetector::learn(const Frame& frame)
 {
     if (predicted_ && observed_ == frame.identity) {
         const double missed = std::max(0.0, std::abs(prediction_.predicted - frame.body.norm()) - uncertainty_);
-        missed_ += newest_weight * (missed * missed - missed_);
+        measured_ = std::min(measured_ + 1, remembered_errors);
+        missed_ += (missed * missed - missed_) / measured_;
     }
     std::shift_left(modulus_.begin(), modulus_.end(), 1);
     modulus_.back() = frame.body.norm();

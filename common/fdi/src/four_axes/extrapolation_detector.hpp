@@ -82,6 +82,7 @@ private:
     ModulusPrediction prediction_;
     double uncertainty_ = 0;  ///< of the prediction
     Identity observed_;       ///< the frame that it is for
+    unsigned measured_ = 0;   ///< predictions that were compared
     double missed_ = 0;       ///< mean square of what predictions missed beyond their uncertainty
     std::array<double, axis_count> triad_modulus_{};
     std::size_t working_triad_ = 0;
