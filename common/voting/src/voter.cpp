@@ -206,8 +206,9 @@ void Voter::consider_state()
 {
     if (state_ == VoterState::listening) return;
     VoterState next = others_->leader(*now_ns_) == nullptr ? VoterState::owning : VoterState::following;
+    const bool had_right = state_ != VoterState::waiting;
     if (!owned_->may_write()) next = VoterState::waiting;
-    else if (output_->repeats() && others_->are_ahead_of(output_->identity(), *now_ns_)) next = VoterState::cut_off;
+    else if (had_right && output_->repeats() && others_->are_ahead_of(output_->identity(), *now_ns_)) next = VoterState::cut_off;
     const bool took_over = next == VoterState::owning && state_ != next && !owned_before_;
     if (took_over) narrator_->ownership(output_->identity(), others_->stronger_exist());
     owned_before_ = false;
