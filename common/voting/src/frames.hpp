@@ -36,7 +36,7 @@ public:
     /// The first frame that may be published, and the one after `sequence`.
     std::optional<std::uint64_t> first() const { return timeline_.next_open(timeline_.next()); }
 
-    /// When the first of them was received.
+    /// When the first frame that is not published yet was received.
     std::optional<std::int64_t> waiting_since_ns() const
     {
         const auto waiting = first();

@@ -54,6 +54,8 @@ void OwnedStream::resume(const OtherVoters& others)
     if (right_ != Right::proving) return;
     right_ = Right::writing;
     good_frames_ = good_frames_required_;
+    // A voter that went on for an interval longer has ceased to wait for this one, and written what this one had decided to.
+    if (others.reached().identity > written_.identity) ready_.clear();
     written_ = std::max(written_, others.reached());
 }
 

@@ -256,6 +256,38 @@ TEST(StandStillOfTheMachine, gives_the_owner_its_right_back_only_where_frames_wa
     }
 }
 
+/// The owner is stopped between its decision about a frame and the write; the frames of the stop wait in its queues.
+/// @param other_until  the weaker voter publishes up to this frame before it stops too
+std::vector<std::uint64_t> written_after_a_stop_before_the_write(std::uint64_t other_until)
+{
+    Scene scene(settings_of(3, {1, 2}, 1));
+    scene.frames(0, lost_from - 1);
+    for (std::size_t lane = 0; lane < 3; ++lane) scene.voter.on_attitude(sample_of(lane, lost_from), Scene::time_of(lost_from));
+    const std::uint64_t next = lost_from + 13;
+    scene.stopped_until(Scene::time_of(next) - ms);
+    for (std::uint64_t sequence = lost_from; sequence <= other_until; ++sequence) scene.at(scene.now, output_by(2, sequence, sequence + 1));
+    for (std::uint64_t sequence = lost_from + 1; sequence < next; ++sequence) {
+        for (std::size_t lane = 0; lane < 3; ++lane) scene.at(scene.now, sample_of(lane, sequence));
+    }
+    scene.frames(next, end);
+    std::vector<std::uint64_t> written;
+    for (const VotedAttitude& output : scene.owned) {
+        if (output.sequence >= lost_from) written.push_back(output.sequence);
+    }
+    return written;
+}
+
+TEST(StandStillOfTheMachine, lets_the_owner_write_what_it_had_decided_to_unless_the_weaker_one_may_have)
+{
+    const auto alone = written_after_a_stop_before_the_write(lost_from - 1);
+    ASSERT_FALSE(alone.empty());
+    EXPECT_EQ(alone.front(), lost_from);
+    const auto after = written_after_a_stop_before_the_write(lost_from + 1);
+    ASSERT_FALSE(after.empty());
+    EXPECT_EQ(after.front(), lost_from + 2) << "the first frame that no voter has published";
+    EXPECT_LT(after.front(), lost_from + 13) << "it resumes";
+}
+
 TEST(StandStillOfTheMachine, costs_an_only_voter_no_frame_that_comes_after_it)
 {
     constexpr std::uint64_t first = lost_from + 16;

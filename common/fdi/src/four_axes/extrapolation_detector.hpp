@@ -49,7 +49,8 @@ double prediction_uncertainty(const std::array<double, 4>& moduli, double resolu
 /// lets a healthy modulus differ by. To it comes the uncertainty of the prediction itself, which the paper does not ask for: without
 /// it 34 of 1400 soft faults (x 0.8) at random times of the paper's motion named a healthy axis within six frames, with it none. To it
 /// also come what the predictions of the last healthy frames missed beyond their uncertainty, times the square of the frames for which the
-/// prediction is held, and how far the modulus moves meanwhile: not every motion is a sum of two exponentials. 672 in place of 1017 are named in that time, the others are ambiguous first.
+/// prediction is held, and how far the modulus moves meanwhile: not every motion is a sum of two exponentials. 672 in place of 1017 are named in
+/// that time, the others are ambiguous first.
 class ExtrapolationDetector final : public FourAxisDetector {
 public:
     static tl::expected<std::unique_ptr<ExtrapolationDetector>, std::string> make(const DetectorSettings& settings,
