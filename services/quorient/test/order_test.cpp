@@ -72,7 +72,7 @@ protected:
     ~OrderTest() override { testing::internal::GetCapturedStdout(); }
 
     /// @param at  called with every 10 ms of time. @returns the exit code, or -1 if there is none within six seconds.
-    int give(const std::function<void(int)>& at = [](int) {})
+    int give(const std::function<void(int)>& at = [](int) {}, bool secured = false)
     {
         FaultCommand command;
         command.unit = 1;
@@ -80,7 +80,7 @@ protected:
         command.action = octet(CommandAction::readmit);
         const auto bus = hub.open();
         runtime::EventLoop loop(*bus, clock, never_stop);
-        const Order order(command, *bus, loop);
+        const Order order(command, *bus, loop, secured);
         for (int time_ms = 0; time_ms < 6000 && !loop.quit_requested(); time_ms += 10) {
             clock.set(clock.steady_ns() + 10 * millisecond_ns);
             at(time_ms);
@@ -113,6 +113,18 @@ TEST_F(OrderTest, is_repeated_for_who_came_after_its_first_word)
     ASSERT_EQ(detectors.size(), 2U);
     EXPECT_EQ(detectors.back().obeyed, 1U);
     EXPECT_EQ(detectors.front().obeyed, 1U) << "who has heard it does not do it again";
+}
+
+TEST_F(OrderTest, of_a_secured_system_looks_longer_for_whom_it_concerns)
+{
+    int first_word_ms = 0;
+    const auto start_the_second = [&](int time_ms) {
+        if (detectors.front().words == 0) first_word_ms = time_ms;
+        if (time_ms == first_word_ms + 1500) detectors.emplace_back(hub, clock, 2);
+    };
+    EXPECT_EQ(give(start_the_second, true), 0);
+    ASSERT_EQ(detectors.size(), 2U);
+    EXPECT_EQ(detectors.back().obeyed, 1U);
 }
 
 TEST_F(OrderTest, names_who_does_not_answer)

@@ -35,7 +35,7 @@ int send(const CommandOptions& options, const FaultCommand& command)
     auto ours = command;
     ours.unit = options.bus.unit;
     ours.request = static_cast<std::uint64_t>(clock.wall_ns());
-    const Order order(ours, *bus, loop);
+    const Order order(ours, *bus, loop, !options.bus.keys.empty());
     return loop.run();
 }
 

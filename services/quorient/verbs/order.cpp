@@ -19,6 +19,9 @@ constexpr std::int64_t discovery_ns = 1'200'000'000;
 // A status comes twice a second: so long another service may be found that has to hear this. A unit has one sensor publisher.
 constexpr std::int64_t all_found_ns = 600'000'000;
 
+// Members of a secured system first prove who they are: on two processors that takes a restarted one up to 2 s.
+constexpr std::int64_t all_authenticated_ns = 2'000'000'000;
+
 constexpr std::int64_t repetition_ns = 100'000'000;
 
 ServiceRole concerned_role(std::uint8_t action)
@@ -35,12 +38,12 @@ ServiceRole concerned_role(std::uint8_t action)
 
 }  // namespace
 
-Order::Order(const FaultCommand& command, bus::Bus& bus, runtime::EventLoop& loop)
+Order::Order(const FaultCommand& command, bus::Bus& bus, runtime::EventLoop& loop, bool secured)
     : command_(command),
       loop_(loop),
       commands_(bus.advertise(bus::topics::command)),
       of_a_frame_(action_of(command) == CommandAction::reset_attitude),
-      search_ns_(concerned_role(command.action) == ServiceRole::sensor ? 0 : all_found_ns),
+      search_ns_(concerned_role(command.action) == ServiceRole::sensor ? 0 : secured ? all_authenticated_ns : all_found_ns),
       begin_ns_(loop.clock().steady_ns())
 {
     loop_.on(bus.subscribe(bus::topics::frame), [this](const SensorFrame& frame) {

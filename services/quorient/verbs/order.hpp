@@ -21,7 +21,8 @@ public:
     static constexpr double patience_s = 5;
 
     /// Answers go to stdout. Ends `loop` with 0 if all have done it, 1 if one refused or did not answer in time (named on stderr).
-    Order(const FaultCommand& command, bus::Bus& bus, runtime::EventLoop& loop);
+    /// @param secured  the system runs under DDS Security: services are found later.
+    Order(const FaultCommand& command, bus::Bus& bus, runtime::EventLoop& loop, bool secured = false);
 
 private:
     void look();
