@@ -9,7 +9,7 @@ import sys
 import time
 
 from integration_tests.harness.judge import FINAL_ERROR_RAD, disordered, errors, first_judged, gaps, missing_frames
-from integration_tests.harness.pipeline import ALL_LANES, RATE_HZ, NotInTime, Pipeline, ask_for_priority, at_least_once, rate_between
+from integration_tests.harness.pipeline import ALL_LANES, LEVELS, RATE_HZ, NotInTime, Pipeline, ask_for_priority, at_least_once, rate_between
 from integration_tests.harness.resources import memory_and_descriptors
 from integration_tests.harness.steady import Steady
 from integration_tests.harness.streams import SINGLE
@@ -155,7 +155,7 @@ def conclude(soak, names, before, after):
 
 def soaked(options, seed):
     """@returns whether every invariant held."""
-    with Pipeline("source.duration_s=86400", "source.faults=[]", LANES, rate_hz=options.rate) as pipeline:
+    with Pipeline("source.duration_s=86400", "source.faults=[]", LANES, rate_hz=options.rate, level=options.level) as pipeline:
         soak = Soak(pipeline, seed)
         try:
             pipeline.until_running()
@@ -183,6 +183,7 @@ def main():
     parser.add_argument("--minutes", type=float, default=10, help="at least one round is run to its end")
     parser.add_argument("--seed", type=int, default=None)
     parser.add_argument("--rate", type=rate_between(60), metavar="HZ", default=RATE_HZ, help="of the system; 60: below, the plain reader's lease is too short")
+    parser.add_argument("--level", choices=LEVELS, default="none", help="DDS Security of the demo")
     parser.add_argument("--attempts", type=at_least_once, default=1, help="a run that does not hold is void where the machine stood still meanwhile")
     options = parser.parse_args()
     seed = options.seed if options.seed is not None else random.SystemRandom().randrange(1 << 32)

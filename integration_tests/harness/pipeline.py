@@ -16,6 +16,7 @@ from integration_tests.harness.processes import BIN, CONFIGURATIONS
 from integration_tests.harness.streams import Recording, parse_truth, parse_voted
 
 RATE_HZ = 200
+LEVELS = ("none", "sign", "encrypt")  # of DDS Security
 ALL_LANES = 0b111
 END_OF_GRACE_FRAMES = 20  # frames in flight while everything stops do not count as lost
 

@@ -6,7 +6,7 @@ import time
 from typing import NamedTuple
 
 from integration_tests.harness.judge import errors_beyond, judge
-from integration_tests.harness.pipeline import ALL_LANES, RATE_HZ, NotInTime, Pipeline, ask_for_priority, at_least_once, rate_between
+from integration_tests.harness.pipeline import ALL_LANES, LEVELS, RATE_HZ, NotInTime, Pipeline, ask_for_priority, at_least_once, rate_between
 from integration_tests.harness.steady import STEADY_FRAMES, Steady
 from integration_tests.harness.streams import COASTING, HELD, LOST, SINGLE
 
@@ -206,7 +206,7 @@ def main():
     parser.add_argument("--list", action="store_true")
     parser.add_argument("--logs", action="store_true", help="show the logs of the processes of a cell that does not hold")
     parser.add_argument("--attempts", type=at_least_once, default=2)
-    parser.add_argument("--level", choices=("none", "sign", "encrypt"), default="none", help="DDS Security of the demo")
+    parser.add_argument("--level", choices=LEVELS, default="none", help="DDS Security of the demo")
     parser.add_argument("--rate", type=rate_between(50, 200), default=RATE_HZ, help="frames per second")
     options = parser.parse_args()
     if options.list:

@@ -7,10 +7,9 @@ import subprocess
 import sys
 import threading
 
-from integration_tests.harness.pipeline import Pipeline, ask_for_priority
+from integration_tests.harness.pipeline import LEVELS, Pipeline, ask_for_priority
 from integration_tests.security.rogues import CASES, VENDORS, WITHOUT_SECURITY, Listener, prepare, run_case
 
-LEVELS = ("encrypt", "sign", "none")
 RATE_HZ = 50  # the machine also carries the attackers and listeners
 
 

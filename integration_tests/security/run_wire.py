@@ -5,11 +5,10 @@ import argparse
 import sys
 from dataclasses import dataclass
 
-from integration_tests.harness.pipeline import NotInTime, Pipeline, ask_for_priority
+from integration_tests.harness.pipeline import LEVELS, NotInTime, Pipeline, ask_for_priority
 from integration_tests.security.rogues import VENDORS, Listener
 from integration_tests.security.wire import Sniffer, ports_of, renumbered, replay, texts_in, values_in
 
-LEVELS = ("none", "sign", "encrypt")
 RATE_HZ, CAPTURE_FRAMES = 50, 100
 COUNTED_S = 15  # a listener reports ten times a second
 STOPPED = "stopped"  # a listener that no longer reports: the attack has disabled it
