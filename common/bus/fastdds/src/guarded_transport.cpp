@@ -3,6 +3,7 @@
 #include "foreign_acknacks.hpp"
 #include "rtps_guard.hpp"
 
+#include <mutex>
 #include <set>
 
 namespace quorient::bus::fastdds {
@@ -71,6 +72,8 @@ public:
     {
         if (!is_sound_rtps(buffer, size)) return;
         const auto understood = with_understood_acknacks(buffer, size);
+        std::unique_lock one_at_a_time{discovery_, std::defer_lock};
+        if (is_discovery(local)) one_at_a_time.lock();
         above->OnDataReceived(understood ? understood->data() : buffer, size, local, remote);
     }
 
@@ -85,7 +88,11 @@ private:
         low_level_transport_->OpenOutputChannel(not_needed, locator);
     }
 
+    /// Of the two ports of each kind, multicast and unicast, those for discovery are even [RTPS 2.3, 9.6.1.1].
+    static bool is_discovery(const Locator_t& local) { return local.port % 2 == 0; }
+
     GuardedDescriptor descriptor_;
+    std::mutex discovery_;
     std::set<Locator_t> known_;
 };
 
