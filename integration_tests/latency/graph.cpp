@@ -2,12 +2,14 @@
 // The same processes, topics, types and arrows; nothing is detected, integrated or compared. With --waits each process waits for what ours
 // waits for: an integrator for the frame and its verdict, a voter for the attitude of lane 0, its primary, and a majority.
 
+#include "quorient/bus/settings.hpp"
 #include "quorient/messages/attitude_state.hpp"
 #include "quorient/messages/codes.hpp"
 #include "quorient/messages/fault_verdict.hpp"
 #include "quorient/messages/sensor_frame.hpp"
 #include "quorient/messages/stamps.hpp"
 #include "quorient/messages/voted_attitude.hpp"
+#include "quorient/security/identity.hpp"
 #include "raw.hpp"
 
 #include <CLI/CLI.hpp>
@@ -17,6 +19,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <string>
 
 namespace {
@@ -30,6 +33,8 @@ struct Options {
     std::string role;
     std::string dds = "cyclonedds";
     RawSettings raw;
+    std::string keys;      ///< directory that `quorient keys` made; empty: plain DDS
+    std::string identity;  ///< name in it
     std::uint32_t number = 0;  ///< lane or voter
     std::uint32_t lanes = 3;
     std::uint32_t voters = 2;
@@ -108,6 +113,7 @@ void run_detector(Raw& raw, const Options& options)
         drain<VotedAttitude>(*outputs);
         while (frames->take(&frame)) {
             verdict.epoch = frame.epoch;
+            verdict.unit = frame.unit;
             verdict.sequence = frame.sequence;
             verdict.stamp_ns = frame.stamp_ns;
             stamp(verdict.stamp_ns, Hop::detector_in) = stamp(verdict.stamp_ns, Hop::detector_out) = now_ns();
@@ -141,6 +147,7 @@ void run_integrator(Raw& raw, const Options& options)
         while (frames->take(&frame)) frame_count = frame.sequence + 1;
         for (const auto ready = options.waits ? std::min(frame_count, verdict_count) : verdict_count; answered < ready; ++answered) {
             attitude.epoch = verdict.epoch;
+            attitude.unit = verdict.unit;
             attitude.sequence = answered;
             attitude.stamp_ns = stamps[answered % stamps.size()];
             stamp(attitude.stamp_ns, Hop::integrator_in) = stamp(attitude.stamp_ns, Hop::integrator_out) = now_ns();
@@ -173,6 +180,7 @@ void run_voter(Raw& raw, const Options& options)
             if ((lanes & out_already) != 0 || std::popcount(lanes) < majority || !primary_speaks) continue;
             lanes |= out_already;
             voted.epoch = attitude.epoch;
+            voted.unit = attitude.unit;
             voted.sequence = attitude.sequence;
             voted.stamp_ns = attitude.stamp_ns;
             stamp(voted.stamp_ns, Hop::voter_in) = stamp(voted.stamp_ns, Hop::voter_out) = now_ns();
@@ -180,6 +188,18 @@ void run_voter(Raw& raw, const Options& options)
         }
         return true;
     });
+}
+
+/// The files that this process joins with, in the domain and at the level of their directory.
+void secure(Options& options)
+{
+    const auto governance = security::find_governance(options.keys);
+    if (!governance) throw std::runtime_error(governance.error());
+    options.raw.domain = governance->domain;
+    const security::Joining joining{options.identity, bus::vendor_from(options.dds).value(), governance->domain, governance->level};
+    auto identity = security::find_identity(options.keys, joining, std::time(nullptr));
+    if (!identity) throw std::runtime_error(identity.error().front());
+    options.raw.security = std::move(identity->files);
 }
 
 int run(const Options& options)
@@ -201,6 +221,8 @@ int main(int argc, char** argv)
     program.add_option("role", options.role)->required()->check(CLI::IsMember({"sensor", "detector", "integrator", "voter"}));
     program.add_option("--dds", options.dds)->check(CLI::IsMember({"fastdds", "cyclonedds"}));
     program.add_option("--domain", options.raw.domain);
+    program.add_option("--keys", options.keys, "Joins under DDS Security, in the domain of the keys");
+    program.add_option("--as", options.identity, "Identity of --keys");
     program.add_flag("--shared-memory", options.raw.shared_memory);
     program.add_option("--number", options.number, "Of the lane or voter");
     program.add_option("--lanes", options.lanes);
@@ -212,6 +234,7 @@ int main(int argc, char** argv)
     CLI11_PARSE(program, argc, argv);
     std::signal(SIGTERM, [](int) { stopped = 1; });
     try {
+        if (!options.keys.empty()) secure(options);
         return run(options);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "%s\n", error.what());

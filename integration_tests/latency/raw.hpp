@@ -1,7 +1,10 @@
 #pragma once
 
+#include "quorient/bus/security.hpp"
+
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 namespace quorient::latency {
 
@@ -12,6 +15,7 @@ enum class Type { frame, verdict, attitude, voter_output };
 struct RawSettings {
     std::uint32_t domain = 0;
     bool shared_memory = false;
+    std::optional<bus::SecurityFiles> security = std::nullopt;
 };
 
 /// Straight on a vendor's API: what a hop costs without the bus. Samples are the plain structs of common/messages.

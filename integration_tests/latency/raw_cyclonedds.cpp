@@ -1,5 +1,6 @@
 #include "quorient_msgs.h"
 #include "raw.hpp"
+#include "security.hpp"
 
 #include <dds/dds.h>
 #include <dds/ddsc/dds_data_allocator.h>
@@ -107,7 +108,11 @@ public:
             std::string{settings.shared_memory ? "true" : "false"} +
             "</Enable><LogLevel>warn</LogLevel></SharedMemory></Domain></CycloneDDS>";
         domain_ = checked(dds_create_domain(settings.domain, configuration.c_str()));
-        participant_ = checked(dds_create_participant(settings.domain, nullptr, nullptr));
+        auto* qos = dds_create_qos();
+        if (settings.security) bus::cyclonedds::secure(*qos, *settings.security);
+        participant_ = dds_create_participant(settings.domain, qos, nullptr);
+        dds_delete_qos(qos);
+        checked(participant_);
         waitset_ = checked(dds_create_waitset(participant_));
     }
     ~Cyclone() override { dds_delete(domain_); }

@@ -1,5 +1,6 @@
 #include "quorient_msgsPubSubTypes.hpp"
 #include "raw.hpp"
+#include "security.hpp"
 #include "version.hpp"
 
 #include <cstring>
@@ -117,6 +118,7 @@ public:
         qos.transport().user_transports.push_back(udp);
         if (shared_memory_) qos.transport().user_transports.push_back(std::make_shared<rtps::SharedMemTransportDescriptor>());
         qos.wire_protocol().builtin.discovery_config.initial_announcements.count = 50;
+        if (settings.security) bus::fastdds::secure(qos.properties(), *settings.security);
         participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(settings.domain, qos);
         if (!participant_) throw std::runtime_error("Fast DDS: cannot join the domain");
         publisher_ = participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
