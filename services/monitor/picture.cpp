@@ -4,6 +4,7 @@
 #include "quorient/bus/settings.hpp"
 #include "quorient/messages/meaning.hpp"
 #include "quorient/messages/name.hpp"
+#include "quorient/messages/units.hpp"
 #include "quorient/messages/words.hpp"
 #include "quorient/rotation/euler.hpp"
 
@@ -17,12 +18,10 @@ using Json = nlohmann::json;
 
 namespace {
 
-constexpr double degree = 180 / M_PI;
-
 Json euler_deg(const std::array<double, 4>& q)
 {
     const auto [roll, pitch, yaw] = rotation::roll_pitch_yaw(q);
-    return {{"roll", rounded(roll * degree, 7)}, {"pitch", rounded(pitch * degree, 7)}, {"yaw", rounded(yaw * degree, 7)}};
+    return {{"roll", rounded(roll / degree, 7)}, {"pitch", rounded(pitch / degree, 7)}, {"yaw", rounded(yaw / degree, 7)}};
 }
 
 Json attitude_json(const Tick& tick)

@@ -3,6 +3,7 @@
 #include "axis_state.hpp"
 #include "quorient/messages/meaning.hpp"
 #include "quorient/messages/name.hpp"
+#include "quorient/messages/units.hpp"
 #include "quorient/messages/words.hpp"
 #include "quorient/rotation/euler.hpp"
 
@@ -16,8 +17,6 @@ namespace quorient::monitor {
 using Json = nlohmann::json;
 
 namespace {
-
-constexpr double degree = 180 / M_PI;
 
 Json number()
 {
@@ -112,9 +111,9 @@ std::vector<Json> attitude(const Tick& tick)
     if (!tick.voted_fresh || level_of(voted) == VoteLevel::lost || !rotation::is_attitude(voted.attitude)) return {};
     const auto [roll, pitch, yaw] = rotation::roll_pitch_yaw(voted.attitude);
     return {{{"timestamp", time_json(tick.wall_time_ns)},
-             {"roll_deg", rounded(roll * degree, 9)},
-             {"pitch_deg", rounded(pitch * degree, 9)},
-             {"yaw_deg", rounded(yaw * degree, 9)},
+             {"roll_deg", rounded(roll / degree, 9)},
+             {"pitch_deg", rounded(pitch / degree, 9)},
+             {"yaw_deg", rounded(yaw / degree, 9)},
              {"sigma_rad", rounded(voted.angle_sigma_rad)},
              {"spread_rad", rounded(voted.spread_rad)},
              {"error_rad", rounded(tick.error_rad)},

@@ -1,6 +1,7 @@
 #include "quorient/design/bounds.hpp"
 
 #include "places.hpp"
+#include "quorient/messages/units.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -14,7 +15,6 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double degree = pi / 180;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double most_noise_ratio = 1e4;
 constexpr std::size_t most_failure_sets = 500;

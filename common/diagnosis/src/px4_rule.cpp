@@ -1,14 +1,14 @@
 #include "quorient/diagnosis/px4_rule.hpp"
 
+#include "quorient/messages/units.hpp"
+
 #include <Eigen/Dense>
 #include <algorithm>
-#include <numbers>
 
 namespace quorient::diagnosis {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double tolerated_rad_s = 7 * degree;
 constexpr double faulty_rad = 15 * degree;
 constexpr double smoothing = 0.05;

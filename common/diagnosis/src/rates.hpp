@@ -1,15 +1,13 @@
 #pragma once
 
+#include "quorient/messages/units.hpp"
 #include "quorient/recording/resampler.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <numbers>
 #include <vector>
 
 namespace quorient::diagnosis {
-
-inline constexpr double degree = std::numbers::pi / 180;
 
 /// All three axes of this instrument have data in the frame.
 inline bool has_triad(const recording::AlignedFrame& frame, std::size_t m)

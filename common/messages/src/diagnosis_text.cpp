@@ -1,16 +1,14 @@
 #include "quorient/messages/diagnosis_text.hpp"
 
 #include "quorient/messages/meaning.hpp"
+#include "quorient/messages/units.hpp"
 #include "quorient/messages/words.hpp"
 
 #include <array>
 #include <cstdio>
-#include <numbers>
 
 namespace quorient {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 /// A unit to read rates in.
 struct RateUnit {

@@ -5,18 +5,16 @@
 #include "log_clock.hpp"
 #include "mimu_packet.hpp"
 #include "quorient/messages/codes.hpp"
+#include "quorient/messages/units.hpp"
 #include "quorient/recording/reader.hpp"
 
 #include <algorithm>
-#include <numbers>
 #include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 namespace quorient::recording {
-
-inline constexpr double degree = std::numbers::pi / 180.0;
 
 template <std::size_t Size>
 void set_name(Name<Size>& name, std::string_view text)

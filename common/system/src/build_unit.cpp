@@ -1,16 +1,14 @@
 #include "build.hpp"
 #include "quorient/attitude/levelling.hpp"
 #include "quorient/geometry/layouts.hpp"
+#include "quorient/messages/units.hpp"
 #include "quorient/system/axes_file.hpp"
 
 #include <fmt/format.h>
-#include <numbers>
 
 namespace quorient::system {
 
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 tl::expected<geometry::SensorCluster, std::string> cluster_of(UnitSection& unit, const System& system)
 {

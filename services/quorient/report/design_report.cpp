@@ -1,6 +1,7 @@
 #include "design_report.hpp"
 
 #include "quorient/design/recognise.hpp"
+#include "quorient/messages/units.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,7 +9,6 @@
 #include <functional>
 #include <iterator>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -30,7 +30,6 @@ using design::Bounds;
 using design::Design;
 using design::Figures;
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 std::string cell(double value, bool whole = false)

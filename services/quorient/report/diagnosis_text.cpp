@@ -1,11 +1,11 @@
 #include "report/diagnosis_text.hpp"
 
 #include "quorient/diagnosis/words.hpp"
+#include "quorient/messages/units.hpp"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 namespace quorient::cli {
@@ -14,8 +14,6 @@ namespace {
 using diagnosis::counted;
 using diagnosis::InstrumentFacts;
 using diagnosis::Report;
-
-constexpr double degree = std::numbers::pi / 180;
 
 std::string three(const std::optional<Eigen::Vector3d>& values, int digits)
 {

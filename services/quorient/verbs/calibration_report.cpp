@@ -1,12 +1,12 @@
 #include "calibration_report.hpp"
 
 #include "mounting_report.hpp"
+#include "quorient/messages/units.hpp"
 #include "quorient/messages/words.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace quorient::cli {
 
@@ -15,8 +15,6 @@ namespace {
 using calibration::Calibration;
 using calibration::OutsideClass;
 using calibration::Samples;
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 std::string axis_name(const Calibration& calibration, std::size_t axis)
 {

@@ -6,6 +6,7 @@
 #include "cli/progress.hpp"
 #include "design_input.hpp"
 #include "quorient/geometry/figures.hpp"
+#include "quorient/messages/units.hpp"
 #include "report/design_explain.hpp"
 #include "report/design_picture.hpp"
 #include "report/design_report.hpp"
@@ -16,7 +17,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -24,7 +24,6 @@ namespace quorient::cli {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double ten_years_h = 87'660;
 constexpr double usual_failures_per_h = 1e-6;
 

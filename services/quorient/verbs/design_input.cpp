@@ -2,12 +2,12 @@
 
 #include "quorient/configuration/document.hpp"
 #include "quorient/configuration/section.hpp"
+#include "quorient/messages/units.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 
 namespace quorient::cli {
 
@@ -17,7 +17,6 @@ using configuration::Section;
 using settings::above_zero;
 using settings::not_negative;
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr settings::Bounds any_angle{.lowest = -360, .highest = 360};
 constexpr settings::Bounds up_to_right{.lowest = 0, .highest = 90};
 constexpr std::uint32_t most = max_axes;

@@ -2,19 +2,17 @@
 
 #include "quorient/diagnosis/words.hpp"
 #include "quorient/messages/name.hpp"
+#include "quorient/messages/units.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
-#include <numbers>
 #include <optional>
 #include <vector>
 
 namespace quorient::cli {
 
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 struct Mounted {
     std::string name;

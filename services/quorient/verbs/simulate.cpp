@@ -1,6 +1,7 @@
 #include "cli/cluster_input.hpp"
 #include "cli/program.hpp"
 #include "cli/json_output.hpp"
+#include "quorient/messages/units.hpp"
 #include "quorient/recording/csv_writer.hpp"
 #include "quorient/simulation/simulated_instrument.hpp"
 #include "verbs.hpp"
@@ -8,7 +9,6 @@
 #include <fmt/format.h>
 #include <iostream>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,8 +16,6 @@
 namespace quorient::cli {
 
 namespace {
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 struct SimulateOptions {
     std::string motion;

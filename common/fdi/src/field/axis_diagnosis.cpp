@@ -1,12 +1,11 @@
 #include "field/axis_diagnosis.hpp"
 
+#include "quorient/messages/units.hpp"
+
 #include <cmath>
-#include <numbers>
 
 namespace quorient::fdi::field {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 /// A deviation that so many standard deviations of estimate and class do not explain is one.
 constexpr double significant_sigmas = 3;

@@ -1,13 +1,13 @@
 #include "quorient/fdi/sensor_class.hpp"
 
+#include "quorient/messages/units.hpp"
+
 #include <array>
-#include <numbers>
 #include <utility>
 
 namespace quorient::fdi {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double degree_per_hour = degree / 3600;
 
 /// Data of flights: biases differ by up to 3 deg/s, gains and cross-axis terms by up to 2.9 %, typically 1 %.

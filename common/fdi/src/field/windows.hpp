@@ -1,6 +1,7 @@
 #pragma once
 
 #include "field/window_sums.hpp"
+#include "quorient/messages/units.hpp"
 
 #include <array>
 #include <cmath>
@@ -73,7 +74,6 @@ public:
     /// Below this angle a contradiction cannot matter to the attitude. What shows in very short windows alone may be over already.
     double least_angle_rad(std::size_t window) const
     {
-        constexpr double degree = std::numbers::pi / 180;
         constexpr double passing_s = 0.05;
         return seconds(window) < passing_s ? 0.2 * degree : least_lasting_angle_rad;
     }

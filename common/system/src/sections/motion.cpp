@@ -1,7 +1,8 @@
 #include "motion.hpp"
 
+#include "quorient/messages/units.hpp"
+
 #include <array>
-#include <numbers>
 
 namespace quorient::system {
 
@@ -11,8 +12,6 @@ namespace {
 
 using Kind = MotionSection::Kind;
 using simulation::Coning;
-
-constexpr double degree = std::numbers::pi / 180;
 
 constexpr std::array<settings::Setting<Coning>, 4> coning{{
     {"k2", &Coning::k2, "rad/s", {}, "Rate about an axis that turns in the y-z plane."},

@@ -2,13 +2,13 @@
 
 #include "matrix.hpp"
 #include "quorient/configuration/values.hpp"
+#include "quorient/messages/units.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace quorient::system {
 
@@ -18,7 +18,6 @@ namespace {
 
 using Quaternion = std::array<double, 4>;
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double tolerance = 1e-3;
 
 /// The last digits of a quaternion that somebody normalised already are left as they are.
