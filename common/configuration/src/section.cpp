@@ -25,7 +25,7 @@ std::optional<Number> parsed(const YAML::Node& node)
     return value;
 }
 
-std::string shown(const YAML::Node& node)
+std::string described(const YAML::Node& node)
 {
     if (node.IsScalar()) return fmt::format("'{}'", node.Scalar());
     if (node.IsSequence()) return "a list";
@@ -44,7 +44,7 @@ Section::Section(YAML::Node node, std::string path, Problems& problems)
     : node_(node.IsDefined() ? node : YAML::Node{}), path_(std::move(path)), problems_(&problems)
 {
     if (!node_.IsNull() && !node_.IsMap()) {
-        problems_->add(node_.Mark(), path_, fmt::format("{} must be a mapping of keys to values, got {}", path_, shown(node_)));
+        problems_->add(node_.Mark(), path_, fmt::format("{} must be a mapping of keys to values, got {}", path_, described(node_)));
         node_.reset(YAML::Node{});
     }
     std::map<std::string, YAML::Mark> seen;
@@ -95,7 +95,7 @@ void Section::problem(std::string_view key, std::size_t entry, std::string_view 
 bool Section::is_in_order(std::string_view key, std::optional<double> number, const YAML::Node& node, const Bounds& bounds,
                           std::string_view unit, std::string_view form)
 {
-    if (!number) problem(key, fmt::format("expected {}{}, got {}", form, in_brackets(unit), shown(node)));
+    if (!number) problem(key, fmt::format("expected {}{}, got {}", form, in_brackets(unit), described(node)));
     else if (!bounds.hold(*number)) problem(key, fmt::format("must be {}{}, got {}", bounds.text(), in_brackets(unit), node.Scalar()));
     return number && bounds.hold(*number);
 }
@@ -149,7 +149,7 @@ void Section::text(std::string_view key, std::string& value)
     const auto node = find(key);
     if (!node.IsDefined()) return;
     if (node.IsScalar() && !node.Scalar().empty()) value = node.Scalar();
-    else problem(key, fmt::format("expected a word, got {}", shown(node)));
+    else problem(key, fmt::format("expected a word, got {}", described(node)));
 }
 
 void Section::boolean(std::string_view key, bool& value)
@@ -158,7 +158,7 @@ void Section::boolean(std::string_view key, bool& value)
     if (!node.IsDefined()) return;
     const auto word = node.IsScalar() ? node.Scalar() : std::string{};
     if (word == "true" || word == "false") value = word == "true";
-    else problem(key, fmt::format("expected true or false, got {}", shown(node)));
+    else problem(key, fmt::format("expected true or false, got {}", described(node)));
 }
 
 template <class Number>
@@ -166,14 +166,14 @@ void Section::read_list(std::string_view key, std::vector<Number>& value, const 
 {
     const auto node = find(key);
     if (!node.IsDefined()) return;
-    if (!node.IsSequence()) return problem(key, fmt::format("expected a list of {}s, got {}", form, shown(node)));
+    if (!node.IsSequence()) return problem(key, fmt::format("expected a list of {}s, got {}", form, described(node)));
     value.clear();
     for (std::size_t i = 0; i < node.size(); ++i) {
         const auto read = parsed<Number>(node[i]);
         if (read && bounds.hold(static_cast<double>(*read))) value.push_back(*read);
         else
             problem(key, i,
-                    fmt::format("expected a {}{}{}, got {}", form, bounds.text().empty() ? "" : ", ", bounds.text(), shown(node[i])));
+                    fmt::format("expected a {}{}{}, got {}", form, bounds.text().empty() ? "" : ", ", bounds.text(), described(node[i])));
     }
 }
 
@@ -191,11 +191,11 @@ void Section::texts(std::string_view key, std::vector<std::string>& value)
 {
     const auto node = find(key);
     if (!node.IsDefined()) return;
-    if (!node.IsSequence()) return problem(key, fmt::format("expected a list, got {}", shown(node)));
+    if (!node.IsSequence()) return problem(key, fmt::format("expected a list, got {}", described(node)));
     value.clear();
     for (std::size_t i = 0; i < node.size(); ++i) {
         if (node[i].IsScalar()) value.push_back(node[i].Scalar());
-        else problem(key, i, fmt::format("expected a word, got {}", shown(node[i])));
+        else problem(key, i, fmt::format("expected a word, got {}", described(node[i])));
     }
 }
 
@@ -215,7 +215,7 @@ std::vector<Section> Section::sections(std::string_view key)
     std::vector<Section> result;
     if (!node.IsDefined()) return result;
     if (!node.IsSequence()) {
-        problem(key, fmt::format("expected a list, got {}", shown(node)));
+        problem(key, fmt::format("expected a list, got {}", described(node)));
         return result;
     }
     for (std::size_t i = 0; i < node.size(); ++i) result.emplace_back(node[i], fmt::format("{}[{}]", name_of(key), i), *problems_);
