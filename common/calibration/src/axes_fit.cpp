@@ -11,7 +11,7 @@ namespace {
 
 using geometry::AxisMatrix;
 
-constexpr double least_contrast = 5.0;    // between the weakest motion and the strongest disagreement, both as rms rates
+constexpr double least_motion_to_disagreement = 5.0;  // of the weakest motion to the strongest disagreement, both as rms rates
 constexpr double nominal_enough = 0.175;  // [rad] 10 deg: no assembly error is larger, no deliberate mounting smaller
 
 /// Which rows of H belong to each instrument.
@@ -52,10 +52,10 @@ tl::expected<AxesFit, std::string> fit_axes(const RateMoment& motion, const geom
     const Eigen::SelfAdjointEigenSolver<AxisMatrix> solver(moment);  // eigenvalues ascend
     const double weakest_motion = std::sqrt(std::max(0.0, solver.eigenvalues()(n - 3)));
     const double disagreement = std::sqrt(std::max(0.0, solver.eigenvalues()(n - 4)));
-    if (!(weakest_motion > least_contrast * disagreement))
+    if (!(weakest_motion > least_motion_to_disagreement * disagreement))
         return tl::unexpected(
             fmt::format("the motion about one body axis is {:.4f} rad/s rms only, the axes disagree by {:.4f}; {} times that is needed",
-                        weakest_motion, disagreement, least_contrast));
+                        weakest_motion, disagreement, least_motion_to_disagreement));
 
     const geometry::Axes basis = solver.eigenvectors().rightCols<3>();
     const geometry::Axes fitted = basis * (basis.transpose() * nominal);

@@ -17,7 +17,7 @@ constexpr double huber_sigmas = 1.5;      // a residual beyond them pulls no har
 constexpr int reweightings = 8;
 constexpr double sigma_of_median = 1.4826;  // makes a standard deviation of normal residuals' median magnitude
 constexpr double colour = 4;              // so many averaged samples are one independent piece of information
-constexpr double least_contrast = 5;      // the weakest motion's ratio to the disagreement
+constexpr double least_motion_to_residual = 5;  // of the weakest motion: less shows no gains
 constexpr double least_gain = 0.1;        // below it an axis has no direction
 constexpr std::size_t fewest_samples = 20;
 
@@ -93,7 +93,7 @@ PairFit fit_pair(const Eigen::MatrixXd& measured, const Instrument& of, const In
 {
     PairFit fit;
     for (const Eigen::Index axis : of.axes) fit_axis(against.rates, measured.col(axis), fit);
-    fit.seen = against.weakest_motion > least_contrast * fit.residual;
+    fit.seen = against.weakest_motion > least_motion_to_residual * fit.residual;
     return fit;
 }
 

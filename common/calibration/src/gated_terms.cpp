@@ -19,8 +19,8 @@ namespace quorient::calibration {
 namespace {
 
 
-constexpr std::array<std::size_t, 7> windows{8, 16, 32, 64, 128, 256, 512};
-static_assert(windows.back() == fdi::ArraySums::longest_window);
+constexpr std::array<std::size_t, 7> window_lengths{8, 16, 32, 64, 128, 256, 512};
+static_assert(window_lengths.back() == fdi::ArraySums::longest_window);
 
 constexpr std::size_t order = 10;                       // the tenth largest value decides
 constexpr std::size_t least_values = 4 * order;         // a window with fewer values does not count
@@ -124,14 +124,14 @@ private:
         }
     }
 
-    void add_half(const HeldOut& half, fdi::ArraySums& sums, bool all, std::array<Shown, windows.size()>& shown) const
+    void add_half(const HeldOut& half, fdi::ArraySums& sums, bool all, std::array<Shown, window_lengths.size()>& shown) const
     {
         for (const auto& stretch : half.stretches) {
             sums.reset();
             half.play(samples_, stretch, [&](std::size_t i, const fdi::Measurement& measurement) {
                 if (sums.add(measurement) != fdi::ArraySums::Added::counted) return;
-                for (std::size_t w = 0; w < windows.size(); ++w) {
-                    const std::size_t length = windows[w];
+                for (std::size_t w = 0; w < window_lengths.size(); ++w) {
+                    const std::size_t length = window_lengths[w];
                     if (i < stretch.begin + length || (i - stretch.begin) % (length / 2) != 0 || sums.size() <= length) continue;
                     add_window(sums, length, all && (i - stretch.begin) % length == 0, half.cluster.interval_s, shown[w]);
                 }
@@ -141,7 +141,7 @@ private:
 
     Place seen(const Logs& logs) const
     {
-        std::array<Shown, windows.size()> shown;
+        std::array<Shown, window_lengths.size()> shown;
         for (std::size_t h = 0; h < halves_.size(); ++h)
             for (const AxisMask excluded : exclusions(halves_[h])) {
                 fdi::ArraySums sums(arrays_[h], noise_of(logs, floor_), fdi::chi_square_quantile(3, fdi::ArraySums::gate_tail));
