@@ -8,8 +8,8 @@ namespace quorient::diagnosis {
 namespace {
 
 constexpr double second_s = 1.0;
-constexpr double least_frames = 5;
-constexpr double moving_rad_s = 5 * degree;
+constexpr double least_frames_in_second = 5;
+constexpr double in_motion_rad_s = 5 * degree;
 constexpr std::size_t kept_seconds = 4000;
 
 /// So many sound seconds in a row end a fault.
@@ -114,12 +114,12 @@ void Aftermath::end_second()
 {
     for (std::size_t m = 0; m < array_.instruments(); ++m) {
         const Second& second = seconds_[m];
-        if (second.frames < least_frames || std::sqrt(second.rate_squares.sum() / second.frames) < moving_rad_s) continue;
+        if (second.frames < least_frames_in_second || std::sqrt(second.rate_squares.sum() / second.frames) < in_motion_rad_s) continue;
         const Eigen::Vector3d variance = second.squares / second.frames - (second.difference / second.frames).cwiseAbs2();
         noise_[m].add(variance.cwiseMax(0).cwiseSqrt().cast<float>());
     }
     for (std::size_t place = 0; place < faulty_.size(); ++place)
-        if (seconds_[faulty_[place].instrument].frames >= least_frames) watch_end(place, seconds_[faulty_[place].instrument]);
+        if (seconds_[faulty_[place].instrument].frames >= least_frames_in_second) watch_end(place, seconds_[faulty_[place].instrument]);
     for (Second& second : seconds_) second = {};
     second_begin_s_ = last_s_;
 }

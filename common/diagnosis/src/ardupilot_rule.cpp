@@ -5,7 +5,7 @@
 namespace quorient::diagnosis {
 namespace {
 
-constexpr double tolerated_rad_s = 5 * std::numbers::pi / 180;
+constexpr double ardupilot_tolerated_rad_s = 5 * std::numbers::pi / 180;
 
 }  // namespace
 
@@ -13,7 +13,7 @@ void ArduPilotRule::update(double time_s, std::span<const Eigen::Vector3d> rates
 {
     for (std::size_t gyro = 1; gyro < rates.size(); ++gyro) {
         const double difference = (rates[gyro] - rates.front()).norm();
-        if (difference <= tolerated_rad_s) continue;
+        if (difference <= ardupilot_tolerated_rad_s) continue;
         if (!refusal_) refusal_ = Refusal{gyro, difference, time_s, time_s};
         refusal_->last_s = time_s;
     }

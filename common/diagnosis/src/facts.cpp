@@ -10,7 +10,7 @@ namespace quorient::diagnosis {
 namespace {
 
 /// A gain that is less certain than this is not stated.
-constexpr double known_gain = 0.03;
+constexpr double stated_gain_sigma = 0.03;
 
 /// The rotation in a matrix of gains.
 Eigen::Matrix3d rotation_in(const Eigen::Matrix3d& gain)
@@ -55,7 +55,7 @@ void add_compared_facts(const Overview& overview, const Mountings& mountings, co
     if (!facts.bias_deg_s) facts.bias_deg_s = fit->bias_rad_s / degree;
     Eigen::Vector3d gain = fit->gain.diagonal() * mountings.of[m].scale;
     for (Eigen::Index i = 0; i < 3; ++i)
-        if (fit->gain_sigma(i) > known_gain) gain(i) = std::numeric_limits<double>::quiet_NaN();
+        if (fit->gain_sigma(i) > stated_gain_sigma) gain(i) = std::numeric_limits<double>::quiet_NaN();
     facts.gain = gain;
     if (gain.allFinite()) facts.rotation = Eigen::Quaterniond(Eigen::Matrix3d(mountings.of[m].turned * rotation_in(fit->gain).transpose()));
 }

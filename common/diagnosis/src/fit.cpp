@@ -15,7 +15,7 @@ constexpr double usual_bias_rad_s = 20 * degree;
 constexpr double huber_sigmas = 1.5;
 constexpr int rounds = 6;
 constexpr double least_noise_rad_s = 0.02 * degree;
-constexpr std::size_t least_blocks = 10;
+constexpr std::size_t least_blocks_to_fit = 10;
 
 struct Equations {
     std::vector<Row> rows;
@@ -84,7 +84,7 @@ AxisSolution solve(const Equations& equations, Eigen::Index axis)
 std::optional<Fit> fit_against(const Overview& overview, const Mountings& mountings, std::size_t m, std::uint32_t others)
 {
     const Equations equations = equations_of(overview, mountings, m, others);
-    if (equations.rows.size() < least_blocks) return std::nullopt;
+    if (equations.rows.size() < least_blocks_to_fit) return std::nullopt;
     Fit fit;
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
         const AxisSolution solution = solve(equations, axis);

@@ -12,7 +12,7 @@ constexpr double divide_hz = 5;
 constexpr double fast_enough_hz = 40;
 constexpr double vibrates_rad_s = 0.7 * degree;  // root mean square above and below the divide
 constexpr double alike = 0.1;                  // share by which gains may differ
-constexpr double least_frames = 500;
+constexpr double least_frames_for_gains = 500;
 
 }  // namespace
 
@@ -42,7 +42,7 @@ std::optional<Flexing::Ratio> Flexing::largest() const
     for (std::size_t place = 0; place < axes_.size(); ++place) {
         const Axis& axis = axes_[place];
         const double needed = axis.frames * vibrates_rad_s * vibrates_rad_s;
-        if (!axis.fast || axis.frames < least_frames || axis.high.squares < needed || axis.low.squares < needed) continue;
+        if (!axis.fast || axis.frames < least_frames_for_gains || axis.high.squares < needed || axis.low.squares < needed) continue;
         const double ratio = axis.high.gain() / axis.low.gain();
         if (std::abs(ratio - 1) > alike) ++differing;
         if (!found || std::abs(ratio - 1) > std::abs(found->ratio - 1)) found = Ratio{place / 3, place % 3, ratio, 0};

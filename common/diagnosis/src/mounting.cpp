@@ -15,8 +15,8 @@ namespace quorient::diagnosis {
 namespace {
 
 /// Below this, a tenth of a second says nothing about how an instrument is mounted.
-constexpr double moving_rad_s = 5 * degree;
-constexpr std::size_t least_blocks = 20;
+constexpr double tells_mounting_rad_s = 5 * degree;
+constexpr std::size_t least_moving_blocks = 20;
 constexpr std::size_t groups = 20;
 constexpr double nearly_all = 0.9;  // share of the groups with motion
 
@@ -122,13 +122,13 @@ private:
             if (norms.size() < 2) continue;
             const double usual = count() == 2 ? norms.front() : median(norms);
             const double proved = count() == 2 ? *std::max_element(norms.begin(), norms.end()) : usual;
-            if (!(usual > 0) || proved < moving_rad_s) continue;
+            if (!(usual > 0) || proved < tells_mounting_rad_s) continue;
             for (std::size_t m = 0; m < count(); ++m)
                 if ((block.present >> m & 1U) != 0) ratios[m].push_back(rate(block, m).norm() / usual);
         }
         std::size_t right = 0;
         for (std::size_t m = 0; m < count(); ++m) {
-            if (ratios[m].size() < least_blocks) continue;
+            if (ratios[m].size() < least_moving_blocks) continue;
             const double ratio = median(ratios[m]);
             for (const double factor : wrong_units)
                 if (std::abs(ratio / factor - 1) < unit_tolerance) result_.of[m].scale = factor;
@@ -141,7 +141,7 @@ private:
     {
         std::vector<const Block*> moving;
         for (const Block& block : overview_.blocks())
-            if ((block.present >> a & 1U) != 0 && (block.present >> b & 1U) != 0 && rate(block, a).norm() + rate(block, b).norm() > 2 * moving_rad_s)
+            if ((block.present >> a & 1U) != 0 && (block.present >> b & 1U) != 0 && rate(block, a).norm() + rate(block, b).norm() > 2 * tells_mounting_rad_s)
                 moving.push_back(&block);
         Pairs pairs;
         for (std::size_t i = 0; i < moving.size(); ++i) {
@@ -175,7 +175,7 @@ private:
         const Pairs pairs = compare(a, b);
         const Pair& whole = pairs[groups];
         Relation found;
-        if (whole.blocks < least_blocks) return found;
+        if (whole.blocks < least_moving_blocks) return found;
         const double straight = whole.misfit(Eigen::Matrix3d::Identity());
         const Eigen::Matrix3d* best = &right_angle_turns().front();
         for (const Eigen::Matrix3d& turn : right_angle_turns())

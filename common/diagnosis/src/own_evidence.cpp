@@ -11,7 +11,7 @@ namespace {
 /// Sound axes repeat a value at rest and at a turning point; not for so long while the others turn by so much.
 constexpr double least_stuck_s = 0.3;
 constexpr double moved_rad_s = 10 * degree;
-constexpr std::size_t most_spells = 1000;
+constexpr std::size_t most_stuck_spells = 1000;
 
 /// A frame that is so far off is a spike. Shocks do that to sound instruments now and then; so many, and so often, they do not.
 constexpr double spike_rad_s = 50 * degree;
@@ -44,7 +44,7 @@ void OwnEvidence::add(double begin_s, double end_s, std::span<const Compared> fr
 void OwnEvidence::end(std::size_t place, bool log_ends)
 {
     const Axis& axis = axes_[place];
-    if (!axis.known || axis.last_s - axis.since_s < least_stuck_s || axis.largest - axis.least < moved_rad_s || stuck_.size() >= most_spells) return;
+    if (!axis.known || axis.last_s - axis.since_s < least_stuck_s || axis.largest - axis.least < moved_rad_s || stuck_.size() >= most_stuck_spells) return;
     stuck_.push_back({place / 3, place % 3, axis.value, axis.since_s, log_ends ? std::nullopt : std::optional(axis.last_s)});
 }
 

@@ -9,7 +9,7 @@ namespace quorient::diagnosis {
 
 namespace {
 
-constexpr double tolerated_rad_s = 7 * degree;
+constexpr double px4_tolerated_rad_s = 7 * degree;
 constexpr double faulty_rad = 15 * degree;
 constexpr double smoothing = 0.05;
 
@@ -38,7 +38,7 @@ AxisMask Px4Rule::update(const SensorFrame& frame)
     for (Instrument& instrument : instruments_) {
         const Eigen::Vector3d difference = (instrument.body_from_axes * increments - mean) / frame.interval_s;
         instrument.difference += smoothing * (difference - instrument.difference);
-        const double excess = instrument.difference.norm() - tolerated_rad_s;
+        const double excess = instrument.difference.norm() - px4_tolerated_rad_s;
         instrument.integral_rad = std::max(0.0, instrument.integral_rad + excess * frame.interval_s);
     }
     const auto worst = std::max_element(instruments_.begin(), instruments_.end(),

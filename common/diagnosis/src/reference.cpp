@@ -12,15 +12,15 @@
 namespace quorient::diagnosis {
 namespace {
 
-/// Certain enough to be taken out of another log.
-constexpr double known_gain = 0.01;
+/// A gain that is more certain than this is taken out of another log.
+constexpr double removed_gain_sigma = 0.01;
 
 /// The fit where it is certain, identity where nothing moved.
 Eigen::Matrix3d known_part(const Fit& fit)
 {
     Eigen::Matrix3d gain = Eigen::Matrix3d::Identity();
     for (Eigen::Index i = 0; i < 3; ++i)
-        if (fit.gain_sigma(i) < known_gain) gain.row(i) = fit.gain.row(i);
+        if (fit.gain_sigma(i) < removed_gain_sigma) gain.row(i) = fit.gain.row(i);
     return gain;
 }
 

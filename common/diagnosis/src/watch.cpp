@@ -13,7 +13,7 @@ constexpr double detector_begins_s = 1.2;
 
 /// Spells that are no further apart are one.
 constexpr double joined_s = 0.5;
-constexpr std::size_t most_spells = 10'000;
+constexpr std::size_t most_noted_spells = 10'000;
 
 }  // namespace
 
@@ -45,7 +45,7 @@ void Watch::add(const fdi::Measurement& measurement, double begin_s, double end_
     }
     const auto over = [&](const Spell& spell) { return spell.to_s < end_s - joined_s; };
     for (const Spell& spell : open_)
-        if (over(spell) && spells_.size() < most_spells) spells_.push_back(spell);
+        if (over(spell) && spells_.size() < most_noted_spells) spells_.push_back(spell);
     open_.erase(std::remove_if(open_.begin(), open_.end(), over), open_.end());
     note_isolations(end_s);
 }
