@@ -1,11 +1,12 @@
 #include "arrangement.hpp"
 
+#include "numbers.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 #include <cmath>
-#include <numbers>
 
 namespace quorient::design {
 
@@ -14,8 +15,6 @@ namespace {
 using Eigen::Index;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-constexpr double pi = std::numbers::pi;
 
 Matrix3d random_rotation(std::mt19937_64& random)
 {

@@ -2,11 +2,11 @@
 
 #include "arrangement.hpp"
 #include "failure_sets.hpp"
+#include "numbers.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <boost/random/uniform_int_distribution.hpp>
-#include <limits>
 #include <random>
 #include <set>
 
@@ -17,8 +17,7 @@ namespace {
 using Eigen::Index;
 using Eigen::Matrix3d;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double singular = 1e-9;
+constexpr double vanishing = 1e-9;    // of det A and of an axis's own W_ii: less is taken for zero
 constexpr double close = 1e-9;        // relative: a demand that is missed by less is met
 constexpr double impossible = 1e6;
 constexpr std::size_t choices_of_task = 2000;
@@ -38,7 +37,7 @@ struct Merits {
 enum class Order : std::uint8_t { objective, trace, worst, rivalry, cosine };
 constexpr Order orders[] = {Order::objective, Order::trace, Order::worst, Order::rivalry, Order::cosine};
 
-double rounded(double value)
+double rounded_to_decimals(double value)
 {
     constexpr double digits = 1e10;
     return std::isfinite(value) ? std::round(value * digits) / digits : value;
@@ -46,15 +45,15 @@ double rounded(double value)
 
 std::vector<double> key(const Merits& merits, Order order)
 {
-    std::vector<double> list{rounded(merits.missing), merits.unnamed ? 1.0 : 0.0};
-    if (order == Order::objective) list.push_back(rounded(merits.objective));
-    if (order == Order::worst && !merits.worst.empty()) list.push_back(rounded(merits.worst.back()));
-    if (order == Order::rivalry) list.push_back(rounded(merits.rivalry));
-    if (order == Order::cosine) list.push_back(rounded(merits.cosine));
-    list.push_back(rounded(merits.trace));
-    for (const double worst : merits.worst) list.push_back(rounded(worst));
-    list.push_back(rounded(merits.rivalry));
-    list.push_back(rounded(merits.cosine));
+    std::vector<double> list{rounded_to_decimals(merits.missing), merits.unnamed ? 1.0 : 0.0};
+    if (order == Order::objective) list.push_back(rounded_to_decimals(merits.objective));
+    if (order == Order::worst && !merits.worst.empty()) list.push_back(rounded_to_decimals(merits.worst.back()));
+    if (order == Order::rivalry) list.push_back(rounded_to_decimals(merits.rivalry));
+    if (order == Order::cosine) list.push_back(rounded_to_decimals(merits.cosine));
+    list.push_back(rounded_to_decimals(merits.trace));
+    for (const double worst : merits.worst) list.push_back(rounded_to_decimals(worst));
+    list.push_back(rounded_to_decimals(merits.rivalry));
+    list.push_back(rounded_to_decimals(merits.cosine));
     return list;
 }
 
@@ -125,7 +124,7 @@ private:
     static double trace_of_inverse(const Matrix3d& a)
     {
         const double determinant = a.determinant();
-        if (determinant < singular) return infinity;
+        if (determinant < vanishing) return infinity;
         const double minors = a(0, 0) * a(1, 1) - a(0, 1) * a(0, 1) + a(0, 0) * a(2, 2) - a(0, 2) * a(0, 2) + a(1, 1) * a(2, 2) - a(1, 2) * a(1, 2);
         return minors / determinant;
     }
@@ -157,7 +156,7 @@ private:
         double largest = 0;
         for (Index i = 0; i < rows.rows(); ++i) {
             const double own = 1 - shared(i, i);
-            if (own < singular) return infinity;
+            if (own < vanishing) return infinity;
             for (Index j = 0; j < rows.rows(); ++j)
                 if (i != j) largest = std::max(largest, std::pow(shared(i, j) / own, 2));
         }

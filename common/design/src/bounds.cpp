@@ -1,24 +1,21 @@
 #include "quorient/design/bounds.hpp"
 
+#include "numbers.hpp"
 #include "places.hpp"
 #include "quorient/messages/units.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace quorient::design {
 
 namespace {
 
-using std::numbers::pi;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double most_noise_ratio = 1e4;
 constexpr std::size_t most_failure_sets = 500;
-constexpr double rounding = 1e-9;  // demands are typed in decimals
+constexpr double decimal_rounding = 1e-9;  // demands are typed in decimals
 
 double squared(double value)
 {
@@ -117,12 +114,12 @@ Checked check_angle(const Brief& brief)
     if (wanted == 0) return {};
     const std::size_t n = brief.axis_count();
     const double most = largest_minimum_angle_rad(n);
-    if (wanted > most + rounding)
+    if (wanted > most + decimal_rounding)
         return refused("minimum_angle_deg", fmt::format("{:g} deg between any two of {} axes: no {} lines in space keep more than {:.4f} deg ({})", wanted / degree,
                                           n, n, most / degree, n <= 6 ? "Fejes Toth 1965" : n == 7 ? "Rankin's bound" : "Rankin's and Fejes Toth's bounds"));
     for (Eigen::Index i = 0; i < brief.kept.rows(); ++i)
         for (Eigen::Index j = i + 1; j < brief.kept.rows(); ++j)
-            if (std::abs(brief.kept.row(i).dot(brief.kept.row(j))) > std::cos(wanted) + rounding)
+            if (std::abs(brief.kept.row(i).dot(brief.kept.row(j))) > std::cos(wanted) + decimal_rounding)
                 return refused("minimum_angle_deg", fmt::format("{:g} deg between any two axes: axes {} and {}, which are kept, are closer", wanted / degree, i, j));
     return {};
 }
@@ -137,7 +134,7 @@ Checked check_limits(const Brief& brief, const Bounds& bounds)
         const double trace = whole ? bounds.trace : found->trace;
         const double volume = whole ? bounds.volume : found->volume;
         const auto forbids = [&](const char* what, const std::optional<double>& wanted, double least) -> Checked {
-            if (!wanted || *wanted >= least * (1 - rounding)) return {};
+            if (!wanted || *wanted >= least * (1 - decimal_rounding)) return {};
             return refused("limits", fmt::format("{} of at most {:g} after {} failures: no {} axes do better than {:.6g}", what, *wanted, limit.failures, brief.axis_count(), least));
         };
         for (const Checked& checked : {forbids("a trace", limit.trace, trace), forbids("a volume", limit.volume, volume), forbids("a condition", limit.condition, 1)})

@@ -1,5 +1,7 @@
 #include "quorient/design/fault_size.hpp"
 
+#include "numbers.hpp"
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -9,7 +11,6 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cstdint>
 #include <cmath>
-#include <limits>
 
 namespace quorient::design {
 
@@ -17,7 +18,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double invisible = 1e-12;
 constexpr double indistinct = 1e-4;    // distance in parity space below which two sets of faults look alike
 constexpr double largest_size = 1e4;   // sigma; what is not reached by then is called infinite

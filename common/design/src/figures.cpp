@@ -1,6 +1,7 @@
 #include "quorient/design/figures.hpp"
 
 #include "failure_sets.hpp"
+#include "numbers.hpp"
 #include "quorient/geometry/figures.hpp"
 #include "quorient/geometry/redundancy.hpp"
 
@@ -19,7 +20,6 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 constexpr double significant = 1e8;  // figures that agree to so many parts are the same
 constexpr double negligible = 1e-2;   // relative: what a design must be better by to stand beside another
@@ -92,7 +92,7 @@ double worst_mounted_trace(const geometry::Axes& axes, const Yardstick& yardstic
 }
 
 /// 8 digits behind the first, so that the last digits of different searches do not decide.
-double rounded(double value)
+double rounded_to_significant(double value)
 {
     if (!std::isfinite(value) || value == 0) return value;
     const double scale = std::pow(10, std::floor(std::log10(std::abs(value))));
@@ -222,10 +222,10 @@ double single_cost(const geometry::Axes& axes, const Yardstick& yardstick, Objec
 
 bool better(const Figures& first, const Figures& second, Objective objective)
 {
-    const double own = rounded(cost(first, objective));
-    const double other = rounded(cost(second, objective));
+    const double own = rounded_to_significant(cost(first, objective));
+    const double other = rounded_to_significant(cost(second, objective));
     if (own != other) return own < other;
-    return std::ranges::lexicographical_compare(merits(first), merits(second), {}, rounded, rounded);
+    return std::ranges::lexicographical_compare(merits(first), merits(second), {}, rounded_to_significant, rounded_to_significant);
 }
 
 bool as_good(const Figures& first, const Figures& second, Objective objective)

@@ -1,5 +1,6 @@
 #include "places.hpp"
 
+#include "numbers.hpp"
 #include "quorient/geometry/redundancy.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -7,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace quorient::design {
@@ -17,8 +17,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double pi = std::numbers::pi;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double parallel = 1e-9;  // limit of 1 - |cosine|
 
 const double diagonal_cone_rad = std::acos(std::numbers::inv_sqrt3);  // half-angle of three right-angled axes around their diagonal
@@ -216,19 +214,19 @@ void drop_repetitions(std::vector<Place>& places, unsigned axes_each)
     places = std::move(kept);
 }
 
-using Checked = tl::expected<void, std::string>;
+using CheckedMounting = tl::expected<void, std::string>;
 
-Checked problem(std::string text)
+CheckedMounting problem(std::string text)
 {
     return tl::unexpected(std::move(text));
 }
 
-Checked check_kind(const FreeMounting&, const Brief&)
+CheckedMounting check_kind(const FreeMounting&, const Brief&)
 {
     return {};
 }
 
-Checked check_kind(const ConeMounting& cone, const Brief& brief)
+CheckedMounting check_kind(const ConeMounting& cone, const Brief& brief)
 {
     if (!cone.half_angle_rad) return {};
     if (brief.axes_each == 3 && std::abs(*cone.half_angle_rad - diagonal_cone_rad) > 1e-6)
@@ -240,7 +238,7 @@ Checked check_kind(const ConeMounting& cone, const Brief& brief)
     return {};
 }
 
-Checked check_kind(const FaceMounting& mounting, const Brief& brief)
+CheckedMounting check_kind(const FaceMounting& mounting, const Brief& brief)
 {
     std::size_t room = 0;
     for (const Face& face : mounting.faces) room = std::min<std::size_t>(max_axes, room + face.holds);
@@ -253,20 +251,20 @@ Checked check_kind(const FaceMounting& mounting, const Brief& brief)
     return {};
 }
 
-Checked check_kind(const RightAngleMounting&, const Brief& brief)
+CheckedMounting check_kind(const RightAngleMounting&, const Brief& brief)
 {
     if (brief.minimum_angle_rad > 0 && brief.axis_count() > 3)
         return problem("right angles offer three directions: of more than 3 axes some are parallel, at 0 deg from each other");
     return {};
 }
 
-Checked check_kind(const WedgeMounting& mounting, const Brief&)
+CheckedMounting check_kind(const WedgeMounting& mounting, const Brief&)
 {
     if (mounting.angles_rad.empty()) return problem("no wedges to mount on");
     return {};
 }
 
-Checked check_kind(const SymmetricMounting& mounting, const Brief& brief)
+CheckedMounting check_kind(const SymmetricMounting& mounting, const Brief& brief)
 {
     if (brief.kept.rows() > 0) return problem("a symmetry of the new axes beside axes that are kept: mount them freely, or keep none");
     const std::size_t left = brief.instruments % mounting.order;
@@ -280,7 +278,7 @@ Checked check_kind(const SymmetricMounting& mounting, const Brief& brief)
 }
 
 /// All places fixed in one plane, or on one line, measure nothing outside.
-Checked check_directions(const Brief& brief)
+CheckedMounting check_directions(const Brief& brief)
 {
     if (brief.axes_each > 1) return {};
     const std::vector<Place> places = choices(brief).places;
