@@ -1,6 +1,7 @@
 #include "quorient/recording/merge.hpp"
 
 #include "aligned_reader.hpp"
+#include "turn_profile.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -9,12 +10,7 @@
 namespace quorient::recording {
 namespace {
 
-constexpr double grid_s = 0.01;
-constexpr std::size_t half_window = 5;           // grid points: averaging over 0.1 s keeps manoeuvres and drops the aliased vibration
 constexpr std::size_t longest_profile = 60'000;  // grid points, ten minutes: what the estimate holds of a log, however long it is
-constexpr double least_correlation = 0.7;        // the flights at hand: above 0.99 with each other, at most 0.25 across
-
-using Profile = std::vector<double>;
 
 /// Angle turned through by the first triad up to each time of a grid from the log's beginning [rad].
 Profile turned_angle(Reader& reader)
@@ -92,11 +88,11 @@ tl::expected<ClockOffset, std::string> estimate_offset(const std::filesystem::pa
     std::vector<double> values;
     for (std::ptrdiff_t lag = -longest; lag <= longest; ++lag) values.push_back(correlation(*a, *b, lag));
     const auto top = std::max_element(values.begin(), values.end());
-    if (*top < least_correlation)
+    if (*top < same_motion_correlation)
         return tl::unexpected(
             fmt::format("{} and {} do not show the same motion: their rates of turn correlate by {:.2f} at best, {} is needed (offsets "
                         "up to {} s were tried)",
-                        reference.string(), other.string(), std::max(0.0, *top), least_correlation, longest_s));
+                        reference.string(), other.string(), std::max(0.0, *top), same_motion_correlation, longest_s));
     const auto place = top - values.begin();
     const bool inside = top != values.begin() && top + 1 != values.end();
     const double fine = inside ? parabola_top(*(top - 1), *top, *(top + 1)) : 0;

@@ -6,7 +6,7 @@
 namespace quorient::recording {
 namespace {
 
-constexpr double range_rad_s = 2000.0 * degree;                // Xsens DOT user manual
+constexpr double dot_range_rad_s = 2000.0 * degree;            // Xsens DOT user manual
 constexpr std::int64_t fine_time_wrap_ns = 4'294'967'296'000;  // SampleTimeFine is a 32-bit count of microseconds
 
 /// The name of the sensor in the file's name: "Xsens DOT7_D422….csv" -> "DOT7", "IMU_2.csv" -> "IMU_2".
@@ -57,7 +57,7 @@ DotReader::DotReader(Input input, const std::filesystem::path& file, const DotCo
     description_.instrument_count = 1;
     for (std::size_t k = 0; k < 3; ++k) {
         description_.axis[k][k] = 1.0;
-        description_.range[k] = range_rad_s;
+        description_.range[k] = dot_range_rad_s;
     }
     set_name(description_.instrument_name[0], sensor_name(file));
     set_name(description_.name, sensor_name(file));

@@ -14,7 +14,7 @@ namespace quorient::recording {
 namespace {
 
 /// Stamps come in microseconds.
-constexpr std::int64_t rounding_ns = 1000;
+constexpr std::int64_t stamp_rounding_ns = 1000;
 
 /// Devices are switched on and off one after the other: a log that begins later or ends earlier than the others by no more than this
 /// did not fail, and the common log begins and ends with it.
@@ -43,9 +43,9 @@ public:
     /// After reach(): whether it had begun by then, and whether it has ended before.
     bool begun(std::int64_t begin_ns) const
     {
-        return frames_.empty() || frames_.front().time_ns - std::llround(frames_.front().interval_s * 1e9) <= begin_ns + rounding_ns;
+        return frames_.empty() || frames_.front().time_ns - std::llround(frames_.front().interval_s * 1e9) <= begin_ns + stamp_rounding_ns;
     }
-    bool over(std::int64_t end_ns) const { return ended_ && (frames_.empty() || frames_.back().time_ns < end_ns - rounding_ns); }
+    bool over(std::int64_t end_ns) const { return ended_ && (frames_.empty() || frames_.back().time_ns < end_ns - stamp_rounding_ns); }
 
     /// Adds its axes behind those that the frame has; they are valid where its own frames cover the interval without a hole.
     void add_to(RecordedFrame& frame, std::int64_t begin_ns) const
@@ -71,7 +71,7 @@ public:
             }
         }
         frame.axis_count += count;
-        if (frame.time_ns - begin_ns - covered_ns > rounding_ns) return;
+        if (frame.time_ns - begin_ns - covered_ns > stamp_rounding_ns) return;
         frame.valid_mask |= valid << first;
         frame.acceleration_mask |= acceleration << first;
     }

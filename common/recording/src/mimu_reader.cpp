@@ -9,7 +9,7 @@ namespace {
 
 constexpr double rate_unit_rad_s = degree / 16.4;            // per LSB
 constexpr double acceleration_unit_m_s2 = 9.80665 / 2048.0;  // per LSB
-constexpr double range_rad_s = 2000.0 * degree;              // the data sheet's; the codes end at 1998 deg/s
+constexpr double mimu_range_rad_s = 2000.0 * degree;         // the data sheet's; the codes end at 1998 deg/s
 
 /// Odd IMUs (1, 3 …) are mounted as the body; the even ones are flipped, body = (-y, -x, -z): where their x, y, z axes point.
 constexpr std::array<std::array<double, 3>, 3> upright{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -41,7 +41,7 @@ ClusterDescription board()
             board.position_m[axis] = position_m[imu];
             board.instrument[axis] = static_cast<std::uint8_t>(imu);
             board.quantum[axis] = rate_unit_rad_s * board.interval_s;
-            board.range[axis] = range_rad_s;
+            board.range[axis] = mimu_range_rad_s;
         }
     }
     return board;

@@ -15,7 +15,7 @@
 namespace quorient::recording {
 namespace {
 
-using Opened = tl::expected<std::unique_ptr<InstrumentLog>, std::string>;
+using OpenedInstruments = tl::expected<std::unique_ptr<InstrumentLog>, std::string>;
 
 constexpr std::string_view sqlite_magic = "SQLite format 3";
 
@@ -25,7 +25,7 @@ bool is_sqlite(Bytes beginning)
                       beginning.begin() + static_cast<std::ptrdiff_t>(std::min(beginning.size(), sqlite_magic.size())));
 }
 
-Opened open_mcap(Input input, const std::string& name)
+OpenedInstruments open_mcap(Input input, const std::string& name)
 {
     auto record = mcap::FrameReader::open(input, name);
     if (!record) return std::make_unique<mcap::McapLog>(std::move(input), name);
@@ -33,7 +33,7 @@ Opened open_mcap(Input input, const std::string& name)
     return frame_instruments(std::move(**record), name);
 }
 
-Opened open_kind(Kind kind, Input input, const std::string& name, const LogOptions& options, std::size_t sniffed)
+OpenedInstruments open_kind(Kind kind, Input input, const std::string& name, const LogOptions& options, std::size_t sniffed)
 {
     switch (kind) {
         case Kind::mimu4444: return frame_instruments(std::make_unique<MimuReader>(std::move(input), name), "MIMU4444");
@@ -46,7 +46,7 @@ Opened open_kind(Kind kind, Input input, const std::string& name, const LogOptio
     }
 }
 
-Opened open_source(std::unique_ptr<ByteSource> source, const std::string& name, const LogOptions& options)
+OpenedInstruments open_source(std::unique_ptr<ByteSource> source, const std::string& name, const LogOptions& options)
 {
     Input input(decompressed(std::move(source)));
     const Bytes beginning = input.peek(sniffed_bytes).first(std::min(sniffed_bytes, input.peek(sniffed_bytes).size()));
@@ -68,7 +68,7 @@ std::optional<std::size_t> InstrumentLog::place_of(const Instrument& instrument)
     return instruments_.size() - 1;
 }
 
-Opened open_instruments(const std::filesystem::path& file, const LogOptions& options)
+OpenedInstruments open_instruments(const std::filesystem::path& file, const LogOptions& options)
 {
     if (std::filesystem::is_directory(file)) return ros::open_bag_directory(file);
     auto source = file_source(file);
@@ -80,7 +80,7 @@ Opened open_instruments(const std::filesystem::path& file, const LogOptions& opt
     return open_source(std::move(*source), file.filename().string(), options);
 }
 
-Opened open_instruments(std::vector<std::uint8_t> bytes, const std::string& name, const LogOptions& options)
+OpenedInstruments open_instruments(std::vector<std::uint8_t> bytes, const std::string& name, const LogOptions& options)
 {
     if (is_sqlite(bytes)) return ros::SqliteBag::open(std::move(bytes), name);
     return open_source(memory_source(std::move(bytes)), name, options);

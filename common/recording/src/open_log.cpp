@@ -9,11 +9,11 @@
 namespace quorient::recording {
 namespace {
 
-constexpr std::uint64_t header_lines = 20;  // a DOT export may begin with lines about the device
+constexpr std::uint64_t sniffed_lines = 20;  // a DOT export may begin with lines about the device
 constexpr std::size_t sniffed_records = 100;
 
 using Error = tl::unexpected<std::string>;
-using Opened = tl::expected<std::unique_ptr<Reader>, std::string>;
+using OpenedReader = tl::expected<std::unique_ptr<Reader>, std::string>;
 
 /// The interval that most of the first records keep: the median of the steps forward.
 std::optional<std::int64_t> usual_step_ns(LineSource& lines, std::size_t time_column, double unit_ns)
@@ -39,7 +39,7 @@ std::optional<std::int64_t> usual_step_ns(LineSource& lines, std::size_t time_co
 }
 
 template <class TextLog, class Columns>
-Opened open_with(const std::filesystem::path& file, const tl::expected<Columns, std::string>& columns, double unit_ns, LineSource& lines)
+OpenedReader open_with(const std::filesystem::path& file, const tl::expected<Columns, std::string>& columns, double unit_ns, LineSource& lines)
 {
     const std::uint64_t header_line = lines.line_number();
     if (!columns) return Error(fmt::format("{}:{}: {}", file.string(), header_line, columns.error()));
@@ -51,12 +51,12 @@ Opened open_with(const std::filesystem::path& file, const tl::expected<Columns, 
     return std::make_unique<TextLog>(std::move(*input), file, *columns, header_line, *nominal_ns);
 }
 
-Opened open_text(const std::filesystem::path& file, Input input, const LogOptions& options, std::vector<std::string>& remarks)
+OpenedReader open_text(const std::filesystem::path& file, Input input, const LogOptions& options, std::vector<std::string>& remarks)
 {
     if (options.any()) return open_aligned(file, options, remarks);
     LineSource lines(std::move(input));
     std::string_view line;
-    for (std::uint64_t i = 0; i < header_lines && lines.next(line) == LineSource::Outcome::line; ++i) {
+    for (std::uint64_t i = 0; i < sniffed_lines && lines.next(line) == LineSource::Outcome::line; ++i) {
         std::array<std::string_view, most_columns> cells;
         const std::span<const std::string_view> header(cells.data(), std::min(split(line, cells), cells.size()));
         if (const auto columns = csv_columns(header)) return open_with<CsvReader>(file, *columns, 1e9, lines);
@@ -68,13 +68,13 @@ Opened open_text(const std::filesystem::path& file, Input input, const LogOption
 
 }  // namespace
 
-Opened open_log(const std::filesystem::path& file)
+OpenedReader open_log(const std::filesystem::path& file)
 {
     std::vector<std::string> remarks;
     return open_log(file, {}, remarks);
 }
 
-Opened open_log(const std::filesystem::path& file, const LogOptions& options, std::vector<std::string>& remarks)
+OpenedReader open_log(const std::filesystem::path& file, const LogOptions& options, std::vector<std::string>& remarks)
 {
     if (std::filesystem::is_directory(file)) return open_aligned(file, options, remarks);
     auto input = open_input(file);

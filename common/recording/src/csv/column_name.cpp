@@ -1,6 +1,6 @@
 #include "column_name.hpp"
 
-#include "line_source.hpp"
+#include "table.hpp"
 
 #include <algorithm>
 #include <array>
@@ -26,11 +26,6 @@ bool is_letter(char c)
 bool is_capital(char c)
 {
     return std::isupper(static_cast<unsigned char>(c)) != 0;
-}
-
-bool is_digit(char c)
-{
-    return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
 /// Words and numbers: "IMU2_GyrX" -> imu 2 gyr x. A word ends where a capital follows a small letter, or a digit a letter.

@@ -12,11 +12,6 @@
 namespace quorient::recording::csv {
 namespace {
 
-bool is_digit(char c)
-{
-    return c >= '0' && c <= '9';
-}
-
 std::string_view unquoted(std::string_view cell)
 {
     cell = trimmed(cell);

@@ -24,6 +24,11 @@ enum class Points : std::uint8_t {
 };
 Points points_of(std::string_view cell);
 
+inline bool is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+
 /// Cells of a line. A cell between quotes may hold the delimiter; quotes and blanks around are removed.
 void split_cells(std::string_view line, char delimiter, std::vector<std::string_view>& cells);
 

@@ -1,6 +1,7 @@
 // How a table says, or shows, what it holds: its header, decimal commas, units of time and of rate.
 
 #include "csv_log.hpp"
+#include "median.hpp"
 #include "readers.hpp"
 
 #include <fmt/format.h>
@@ -11,17 +12,10 @@ namespace quorient::recording::csv {
 namespace {
 
 constexpr std::size_t header_lines = 50;  // exports begin with lines about the device
-constexpr std::size_t looked_at = 2000;   // rows from which times and decimal commas are told
+constexpr std::size_t looked_at_rows = 2000;  // rows from which times and decimal commas are told
 constexpr std::size_t judged_at_once = 5000;
 constexpr double slowest_hz = 4;  // that a gyro is logged at; 1000 times as much is the fastest, so that one unit of time fits
 constexpr double gravity_m_s2 = 9.80665;
-
-double median(std::vector<double>& values)
-{
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 std::string_view word_of_time(std::int64_t unit_ns)
 {
@@ -111,8 +105,8 @@ void CsvLog::read_units_row()
 std::optional<std::string> CsvLog::understand()
 {
     if (auto problem = apply_options()) return problem;
-    if (auto problem = look_at_numbers(looked_at)) return problem;
-    if (auto problem = judge_times(looked_at)) return problem;
+    if (auto problem = look_at_numbers(looked_at_rows)) return problem;
+    if (auto problem = judge_times(looked_at_rows)) return problem;
     judge_accelerations();
     return judge_rates();
 }
@@ -225,7 +219,7 @@ void CsvLog::judge_accelerations()
         if (!gyro.acceleration || gyro.acceleration_factor > 0) continue;
         to_first_row();
         std::vector<double> sizes;
-        while (sizes.size() < looked_at && next_row()) {
+        while (sizes.size() < looked_at_rows && next_row()) {
             std::array<double, 3> force{};
             for (std::size_t k = 0; k < 3; ++k)
                 force[k] = cell_number(cell((*gyro.acceleration)[k]), dialect_).value_or(not_logged);

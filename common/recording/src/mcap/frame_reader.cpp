@@ -12,9 +12,9 @@
 namespace quorient::recording::mcap {
 namespace {
 
-constexpr std::uint64_t looked_at = std::uint64_t{64} << 20U;  // bytes of the file's beginning
-constexpr std::size_t most_waiting = 64;                       // frames that wait for their truth
-constexpr std::size_t most_descriptions = 64;                  // in the file's beginning
+constexpr std::uint64_t looked_at_bytes = std::uint64_t{64} << 20U;  // bytes of the file's beginning
+constexpr std::size_t most_waiting = 64;                             // frames that wait for their truth
+constexpr std::size_t most_descriptions = 64;                        // in the file's beginning
 constexpr double longest_interval_s = 3600;
 constexpr std::int64_t longest_record_ns = 1'000'000'000'000'000'000;
 
@@ -81,7 +81,7 @@ FrameReader::Beginning FrameReader::look()
 {
     Beginning beginning;
     std::uint64_t seen = 0;
-    while (seen < looked_at) {
+    while (seen < looked_at_bytes) {
         const auto step = records_.next();
         if (step == RecordStream::Step::end) break;
         if (step == RecordStream::Step::refused) {

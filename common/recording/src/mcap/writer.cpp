@@ -11,12 +11,6 @@ namespace {
 
 constexpr std::size_t full_chunk = std::size_t{1} << 20U;
 
-/// What a channel has in the file and in the chunk in hand.
-struct Count {
-    std::uint64_t written = 0;
-    std::uint64_t added = 0;
-};
-
 void put_chunk_index(RecordBuilder& into, const ChunkBuilder::Placed& chunk)
 {
     into.begin(Opcode::chunk_index).number(chunk.first_time_ns).number(chunk.last_time_ns).number(chunk.chunk_start).number(chunk.chunk_length);
@@ -30,6 +24,12 @@ void put_chunk_index(RecordBuilder& into, const ChunkBuilder::Placed& chunk)
 
 struct Writer::State {
     explicit State(std::ostream& stream) : out(stream) {}
+
+    /// What a channel has in the file and in the chunk in hand.
+    struct Count {
+        std::uint64_t written = 0;
+        std::uint64_t added = 0;
+    };
 
     std::ostream& out;
     std::uint64_t size = 0;
@@ -127,7 +127,7 @@ std::uint16_t Writer::add_channel(std::string_view topic, std::string_view messa
 void Writer::add(std::uint16_t channel, std::uint64_t log_time_ns, std::span<const std::uint8_t> data)
 {
     if (state_->ready.size() > 0) state_->write();  // schemas and channels, before the first message
-    Count& count = state_->counts.at(channel);
+    State::Count& count = state_->counts.at(channel);
     state_->chunk.add({channel, log_time_ns, data}, static_cast<std::uint32_t>(count.written + count.added));
     ++count.added;
     if (state_->chunk.size() >= full_chunk) end_chunk();

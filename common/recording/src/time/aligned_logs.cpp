@@ -7,12 +7,11 @@
 #include <cmath>
 
 namespace quorient::recording {
-namespace {
 
 /// What happens to the samples of one compared instrument on their way to the common intervals.
-class Way {
+class SampleWay {
 public:
-    Way(const SurveyedInstrument& instrument, std::int64_t origin_ns)
+    SampleWay(const SurveyedInstrument& instrument, std::int64_t origin_ns)
         : guard_(instrument.figures.period_s), clock_(instrument.clock), origin_ns_(origin_ns)
     {
         if (clock_.own_clock) own_.emplace(clock_.own_period_s);
@@ -69,6 +68,8 @@ private:
     std::deque<InstrumentSample> waiting_;
     std::vector<InstrumentSample> good_;
 };
+
+namespace {
 
 /// The slowest instrument leads: its samples are not cut apart.
 ResampleSettings settings_of(const Survey& survey, double fastest_hz)
@@ -147,7 +148,7 @@ struct AlignedLogs::State {
     Resampler resampler;
     double interval_s;
     std::vector<Open> logs;
-    std::vector<Way> ways;
+    std::vector<SampleWay> ways;
     std::vector<SurveyedInstrument> instruments;
     InstrumentSample sample;
     std::string problem;
@@ -202,7 +203,7 @@ double AlignedLogs::progress() const
 std::vector<std::uint64_t> AlignedLogs::dropped() const
 {
     std::vector<std::uint64_t> counts;
-    for (const Way& way : state_->ways) counts.push_back(way.dropped());
+    for (const SampleWay& way : state_->ways) counts.push_back(way.dropped());
     return counts;
 }
 

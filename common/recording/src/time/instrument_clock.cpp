@@ -1,30 +1,21 @@
 #include "quorient/recording/instrument_clock.hpp"
 
+#include "median.hpp"
+#include "stamps.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace quorient::recording {
 namespace {
 
-constexpr double stretch_s = 2.0;        // for one earliest arrival
-constexpr std::size_t fewest_stretches = 4;
+constexpr double arrival_stretch_s = 2.0;   // for one earliest arrival
+constexpr std::size_t fewest_arrival_stretches = 4;
 constexpr std::size_t far_stretches = 10;  // between the two that the second estimate compares
 constexpr double ahead_s = 20.0;           // lateness that lasts longer than this looks like lost samples
 constexpr double step_back_s = 1.0;        // a stamp so much earlier than the one before, or a minute later, is another clock
 constexpr double step_forward_s = 60.0;
 constexpr double follow = 0.02;            // share of a remaining difference that the base takes over per sample: the clock drifts
-
-double seconds_of(std::int64_t ns)
-{
-    return static_cast<double>(ns) * 1e-9;
-}
-
-double median(std::vector<double> values)
-{
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 }  // namespace
 
@@ -35,14 +26,14 @@ void PeriodEstimator::add(std::int64_t stamp_ns)
     if (in_stretch_ == 0 || late_s < earliest_.late_s) earliest_ = {number_, late_s};
     ++number_;
     ++in_stretch_;
-    if (in_stretch_ * guess_s_ < stretch_s) return;
+    if (in_stretch_ * guess_s_ < arrival_stretch_s) return;
     stretches_.push_back(earliest_);
     in_stretch_ = 0;
 }
 
 std::optional<double> PeriodEstimator::period_s() const
 {
-    if (stretches_.size() < fewest_stretches) return std::nullopt;
+    if (stretches_.size() < fewest_arrival_stretches) return std::nullopt;
     double period_s = guess_s_;
     for (const std::size_t apart : {std::size_t{1}, far_stretches}) {
         std::vector<double> corrections;

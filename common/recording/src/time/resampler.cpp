@@ -10,7 +10,7 @@ namespace {
 constexpr double longest_hold = 1.7;      // periods that a rate holds: a sample that comes 70 % late is not a missing one
 constexpr double bridged = 0.3;           // periods between what two samples cover that are rounding
 constexpr double uncovered_share = 0.02;  // share of an interval that may lack samples
-constexpr std::int64_t rounding_ns = 2000;
+constexpr std::int64_t uncovered_rounding_ns = 2000;
 constexpr double longest_gap_s = 10.0;    // without any sample: frames go on behind it
 
 std::int64_t ns_of(double seconds)
@@ -156,7 +156,7 @@ void Resampler::fill(AlignedFrame& frame, std::size_t instrument, std::int64_t b
         }
     }
     const std::int64_t length_ns = frame.time_ns - begin_ns;
-    const auto tolerated_ns = std::max<std::int64_t>(rounding_ns, std::llround(uncovered_share * static_cast<double>(length_ns)));
+    const auto tolerated_ns = std::max<std::int64_t>(uncovered_rounding_ns, std::llround(uncovered_share * static_cast<double>(length_ns)));
     if (first == nullptr || length_ns - covered_ns > tolerated_ns) return;
     for (std::size_t k = 0; k < 3; ++k) {
         const double mean = one_value[k] ? first->rate_rad_s[k] : rate[k] / static_cast<double>(covered_ns);

@@ -1,11 +1,12 @@
 #include "stamp_guard.hpp"
 
+#include "stamps.hpp"
+
 #include <cmath>
 
 namespace quorient::recording {
 namespace {
 
-constexpr std::int64_t longest_step_ns = 30'000'000'000;  // beyond it a step is a hole, or another epoch
 constexpr std::int64_t believed_after_ns = 3'000'000'000;
 constexpr std::int64_t set_back_ns = 250'000'000;  // less is a sample out of order
 constexpr double longest_regular_step = 3.0;       // periods

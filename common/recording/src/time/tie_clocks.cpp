@@ -2,6 +2,8 @@
 
 #include "quorient/recording/survey.hpp"
 
+#include "turn_profile.hpp"
+
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
@@ -11,9 +13,6 @@
 namespace quorient::recording {
 namespace {
 
-constexpr double grid_s = 0.01;
-constexpr std::size_t half_window = 5;      // grid points: averaging over 0.1 s keeps manoeuvres and drops aliased vibration
-constexpr double least_correlation = 0.7;   // below it, logs with separate clocks show different motions
 constexpr std::ptrdiff_t steps_around = 15;  // on either side of a top
 constexpr double least_curvature = 1e-5;    // correlation per step squared: motion below 0.05 Hz tells no time
 constexpr double least_unlike = 1e-8;       // what rounding leaves of 1 - correlation squared
@@ -26,7 +25,6 @@ constexpr double least_motion_rad_s = 0.02; // standard deviation of the rate of
 constexpr std::size_t fewest_for_slope = 5;
 constexpr double least_gain = 0.9;          // placing samples must reduce the disagreement to this share
 
-using Profile = std::vector<double>;
 using Rate = std::array<double, 3>;
 
 /// Mean rate of an instrument while another one of the same log was there too. Both turned alike meanwhile, so the sizes of what is left of
@@ -315,10 +313,10 @@ private:
         const Top top = top_of(correlations(reference.smooth, other.smooth, 0, longest_lag(instrument)));
         clock.correlation = std::max(0.0, top.correlation);
         const bool same_log = instrument.log == survey_.instruments[survey_.compared.front()].log;
-        if (!same_log && !survey_.one_epoch && top.correlation < least_correlation)
+        if (!same_log && !survey_.one_epoch && top.correlation < same_motion_correlation)
             return tl::unexpected(fmt::format("{} and {} do not show the same motion: their rates of turn correlate by {:.2f} at best, {} is needed "
                                               "(offsets up to {} s were tried)",
-                                              survey_.logs.front().name, survey_.logs[instrument.log].name, clock.correlation, least_correlation,
+                                              survey_.logs.front().name, survey_.logs[instrument.log].name, clock.correlation, same_motion_correlation,
                                               other_epoch_lag_s));
         if (top.correlation < tied_correlation && (same_log || survey_.one_epoch)) return {};
         if (!top.inside || top.curvature > -least_curvature || lag_error_s(reference, other, top) > largest_lag_error_s) return {};

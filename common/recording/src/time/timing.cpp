@@ -1,28 +1,24 @@
 #include "quorient/recording/timing.hpp"
 
+#include "stamps.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace quorient::recording {
 namespace {
 
-constexpr std::int64_t longest_step_ns = 30'000'000'000;  // beyond it a step is a hole, or another epoch
 constexpr std::size_t steps_to_learn = 400;   // steps from which the period is told
 constexpr double regular_share = 1.5;         // a step beyond so many periods is a gap
 constexpr double shortest_share = 0.5;        // a step below so many periods is a late sample's neighbour
 constexpr double longest_hold_s = 0.1;        // that a rate can stand for: beyond it the motion in between is not in the log
 constexpr double shortest_hole_s = 10.0;         // the logger paused: a log says nothing of what the instrument did then
 constexpr double shortest_hole_periods = 20.0;
-constexpr double stretch_s = 2.0;
+constexpr double rate_stretch_s = 2.0;
 constexpr double same_rate = 0.2;             // relative: a stretch that differs by more has another rate
 constexpr std::size_t most_changes = 64;
 constexpr double widest_gyro_rad_s = 4500 * 0.017453292519943295;
 constexpr std::uint64_t extreme_again = 5;    // times that an axis shows its extreme before it is a limit
-
-double seconds_of(std::int64_t ns)
-{
-    return static_cast<double>(ns) * 1e-9;
-}
 
 /// One axis, from its two sides.
 std::optional<Clipping> both(const std::optional<Clipping>& upper, const std::optional<Clipping>& lower)
@@ -155,14 +151,14 @@ void InstrumentMeter::judge_values(const InstrumentSample& sample)
 void InstrumentMeter::count_for_rate(std::int64_t time_ns)
 {
     const double length_s = seconds_of(time_ns - stretch_begin_ns_);
-    const bool hole = before_ && seconds_of(time_ns - before_->time_ns) > 0.25 * stretch_s;
+    const bool hole = before_ && seconds_of(time_ns - before_->time_ns) > 0.25 * rate_stretch_s;
     if (length_s < 0 || hole) {
         stretch_begin_ns_ = time_ns;
         stretch_samples_ = 0;
         return;
     }
     ++stretch_samples_;
-    if (length_s < stretch_s) return;
+    if (length_s < rate_stretch_s) return;
     const double rate_hz = static_cast<double>(stretch_samples_ - 1) / length_s;
     const double from_s = seconds_of(stretch_begin_ns_ - figures_.first_ns);
     const bool other = stretches_.empty() || std::abs(rate_hz / stretches_.back().rate_hz - 1) > same_rate;
