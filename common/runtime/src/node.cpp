@@ -3,6 +3,7 @@
 #include "quorient/runtime/node.hpp"
 
 #include "quorient/bus/topics.hpp"
+#include "quorient/messages/time.hpp"
 #include "quorient/runtime/options.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +16,6 @@ namespace quorient::runtime {
 
 namespace {
 
-constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr std::int64_t status_period_ns = second_ns / 2;
 /// Nobody asks more often whether frames are fresh, and each beat is a system call.
 constexpr std::int64_t heartbeat_period_ns = 20'000'000;

@@ -17,7 +17,6 @@ std::string beside(const System& system, const std::string& name)
 
 namespace {
 
-using Kind = SourceSection::Kind;
 
 /// Where the file itself states the axes, it states their noise too; the field detector measures biases and noise itself, also in motion.
 bool needs_rest(const File& file, const System& system)
@@ -91,7 +90,7 @@ void check_faults(const SourceSection& source, const geometry::SensorCluster& cl
 
 void build_vessel_source(SourceSection& source, System& system, Report& report)
 {
-    if (source.kind != Kind::simulation) report.at("source.kind", "a vessel's rates come from a simulation: no log format holds a rudder");
+    if (source.kind != SourceSection::Kind::simulation) report.at("source.kind", "a vessel's rates come from a simulation: no log format holds a rudder");
     auto& scenario = system.sensor.source.vessel.emplace(source.vessel);
     scenario.channels = system.channels;
     scenario.interval_s = system.interval_s;
@@ -131,15 +130,15 @@ void build_source(File& file, System& system, Report& report)
     scenario.interval_s = system.interval_s;
     scenario.faults = source.faults;
     switch (source.kind) {
-        case Kind::log:
+        case SourceSection::Kind::log:
             build_log(file, source, system, report);
             system.sensor.source.log->stated_rate_hz = stated_rate_hz;
             break;
-        case Kind::ros2_imu:
+        case SourceSection::Kind::ros2_imu:
             build_imus(source, system, report);
             take_calibration(source, system, report);
             break;
-        case Kind::simulation:
+        case SourceSection::Kind::simulation:
             scenario.quantize = *source.quantize;
             build_simulation(source, system, report);
             break;
@@ -151,7 +150,7 @@ void build_source(File& file, System& system, Report& report)
         }
         cluster->interval_s = scenario.interval_s;
         cluster->kind = system.sensor.kind;
-        if (source.kind == Kind::ros2_imu) check_faults(source, *cluster, report);
+        if (source.kind == SourceSection::Kind::ros2_imu) check_faults(source, *cluster, report);
     }
 }
 

@@ -63,6 +63,11 @@ std::string dump(const Json& value)
     return text;
 }
 
+Json or_null(const std::optional<double>& value)
+{
+    return value ? Json(*value) : Json(nullptr);
+}
+
 Json axes_json(AxisMask mask)
 {
     Json list = Json::array();

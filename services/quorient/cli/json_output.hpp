@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
+#include <limits>
+#include <optional>
 #include <string>
 
 namespace quorient::cli {
@@ -11,11 +13,17 @@ namespace quorient::cli {
 /// Keeps keys in the order in which they are set.
 using Json = nlohmann::ordered_json;
 
+/// A figure that does not exist: null in JSON, "-" in tables.
+inline constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+
 /// One line of JSON: numbers with 17 significant digits, values that are not finite (or unset) as null.
 std::string dump(const Json& value);
 
 /// The axes of a mask, ascending: [1, 4].
 Json axes_json(AxisMask mask);
+
+/// Null where there is no value.
+Json or_null(const std::optional<double>& value);
 
 /// A vector as [..].
 template <class Derived>

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string error_text()
+std::string system_error_text()
 {
     return errno != 0 ? std::strerror(errno) : "cannot be written";
 }
@@ -31,7 +31,7 @@ void refuse_where_it_cannot_be(const fs::path& file, bool force)
     if (!fs::is_directory(folder, unknown)) fail(fmt::format("{}: there is no folder '{}'", file.string(), folder.string()));
     errno = 0;
     if (::access(fs::exists(status) ? file.c_str() : folder.c_str(), W_OK) != 0)
-        fail(fmt::format("{}: cannot be written: {}", file.string(), error_text()));
+        fail(fmt::format("{}: cannot be written: {}", file.string(), system_error_text()));
 }
 
 /// A full disk or a quota may show only when the system writes for good. What is no file on a disk (a pipe) has nothing to wait for.
@@ -56,14 +56,14 @@ std::ostream& OutputFile::stream()
     stream_.rdbuf()->pubsetbuf(nullptr, 0);
     errno = 0;
     stream_.open(name_, std::ios::binary);
-    if (!stream_) failure_ = error_text();
+    if (!stream_) failure_ = system_error_text();
     errno = 0;
     return stream_;
 }
 
 const std::string& OutputFile::failure()
 {
-    if (failure_.empty() && stream_.is_open() && !stream_) failure_ = error_text();
+    if (failure_.empty() && stream_.is_open() && !stream_) failure_ = system_error_text();
     return failure_;
 }
 
@@ -100,7 +100,7 @@ bool OutputFile::is_complete()
         errno = 0;
         stream_.close();
         std::error_code unknown;
-        if (!stream_ || (fs::is_regular_file(name_, unknown) && !is_on_disk(name_))) failure_ = error_text();
+        if (!stream_ || (fs::is_regular_file(name_, unknown) && !is_on_disk(name_))) failure_ = system_error_text();
     }
     return failure_.empty();
 }

@@ -9,9 +9,9 @@ namespace quorient::cli {
 
 namespace {
 
-constexpr std::chrono::seconds patience{2};
+constexpr std::chrono::seconds shown_after{2};
 constexpr std::chrono::milliseconds refresh{100};
-constexpr std::size_t width = 40;
+constexpr std::size_t bar_width = 40;
 
 }  // namespace
 
@@ -25,8 +25,8 @@ Progress::~Progress()
 void Progress::show(std::size_t done, std::size_t all)
 {
     if (all == 0 || !due()) return;
-    const std::size_t filled = width * done / all;
-    print(fmt::format("[{}{}] {:3d}% {}", std::string(filled, '='), std::string(width - filled, ' '), 100 * done / all, title_));
+    const std::size_t filled = bar_width * done / all;
+    print(fmt::format("[{}{}] {:3d}% {}", std::string(filled, '='), std::string(bar_width - filled, ' '), 100 * done / all, title_));
 }
 
 void Progress::show(std::size_t done)
@@ -37,7 +37,7 @@ void Progress::show(std::size_t done)
 bool Progress::due()
 {
     const auto now = Clock::now();
-    if (!terminal_ || now - begin_ < patience || now - last_ < refresh) return false;
+    if (!terminal_ || now - begin_ < shown_after || now - last_ < refresh) return false;
     last_ = now;
     return true;
 }

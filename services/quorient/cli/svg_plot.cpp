@@ -9,33 +9,33 @@ namespace quorient::cli {
 
 namespace {
 
-constexpr double width = 900;
-constexpr double height = 420;  // of one chart
-constexpr double left = 80;
-constexpr double right = 210;  // the legend's room
-constexpr double top = 40;
-constexpr double bottom = 55;
-constexpr double most_ticks = 10;
+constexpr double plot_width = 900;
+constexpr double plot_height = 420;  // of one chart
+constexpr double plot_left = 80;
+constexpr double plot_right = 210;  // the legend's room
+constexpr double plot_top = 40;
+constexpr double plot_bottom = 55;
+constexpr double most_plot_ticks = 10;
 
 std::string frame_and_ticks(const Chart& chart, const Scale& x, const Scale& y, double offset)
 {
-    const double base = offset + height - bottom;
-    std::string text = fmt::format("<text x='{}' y='{:.1f}' font-size='15'>{}</text>\n", left, offset + top - 14, markup_escaped(chart.title));
-    text += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}</text>\n", (left + width - right) / 2, base + 40,
+    const double base = offset + plot_height - plot_bottom;
+    std::string text = fmt::format("<text x='{}' y='{:.1f}' font-size='15'>{}</text>\n", plot_left, offset + plot_top - 14, markup_escaped(chart.title));
+    text += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}</text>\n", (plot_left + plot_width - plot_right) / 2, base + 40,
                         markup_escaped(chart.x_label));
-    text += fmt::format("<text transform='translate(18,{:.1f}) rotate(-90)' text-anchor='middle'>{}</text>\n", (offset + top + base) / 2,
+    text += fmt::format("<text transform='translate(18,{:.1f}) rotate(-90)' text-anchor='middle'>{}</text>\n", (offset + plot_top + base) / 2,
                         markup_escaped(chart.y_label));
     for (const double tick : x.ticks()) {
         const double place = x.place(tick);
         text += fmt::format(
             "<path d='M{0:.1f} {1:.1f}V{2:.1f}' stroke='#ddd'/><text x='{0:.1f}' y='{3:.1f}' text-anchor='middle'>{4:g}</text>\n", place,
-            offset + top, base, base + 18, tick);
+            offset + plot_top, base, base + 18, tick);
     }
     for (const double tick : y.ticks()) {
         const double place = y.place(tick);
         text +=
             fmt::format("<path d='M{1:.1f} {0:.1f}H{2:.1f}' stroke='#ddd'/><text x='{3:.1f}' y='{4:.1f}' text-anchor='end'>{5:g}</text>\n",
-                        place, left, width - right, left - 6, place + 4, tick);
+                        place, plot_left, plot_width - plot_right, plot_left - 6, place + 4, tick);
     }
     return text;
 }
@@ -53,14 +53,14 @@ std::string drawn(const Series& series, const Scale& x, const Scale& y)
     return fmt::format("<path d='{}' fill='none' stroke='{}' stroke-width='1.3'/>\n", path, series.colour);
 }
 
-std::string legend(const Chart& chart, double offset)
+std::string plot_legend(const Chart& chart, double offset)
 {
     std::string text;
-    double row = offset + top + 8;
+    double row = offset + plot_top + 8;
     for (const Series& series : chart.series) {
         if (series.name.empty()) continue;
         text += fmt::format("<rect x='{:.1f}' y='{:.1f}' width='14' height='4' fill='{}'/><text x='{:.1f}' y='{:.1f}'>{}</text>\n",
-                            width - right + 12, row - 4, series.colour, width - right + 32, row + 2, markup_escaped(series.name));
+                            plot_width - plot_right + 12, row - 4, series.colour, plot_width - plot_right + 32, row + 2, markup_escaped(series.name));
         row += 15;
     }
     return text;
@@ -68,8 +68,8 @@ std::string legend(const Chart& chart, double offset)
 
 std::string draw(const Chart& chart, double offset)
 {
-    Scale x(chart.log_x ? Spacing::logarithmic : Spacing::linear, left, width - right);
-    Scale y(chart.log_y ? Spacing::logarithmic : Spacing::linear, offset + height - bottom, offset + top);
+    Scale x(chart.log_x ? Spacing::logarithmic : Spacing::linear, plot_left, plot_width - plot_right);
+    Scale y(chart.log_y ? Spacing::logarithmic : Spacing::linear, offset + plot_height - plot_bottom, offset + plot_top);
     for (const Series& series : chart.series) {
         for (const auto& [px, py] : series.points) {
             if (!x.shows(px) || !y.shows(py)) continue;
@@ -77,11 +77,11 @@ std::string draw(const Chart& chart, double offset)
             y.include(py);
         }
     }
-    x.settle(most_ticks);
-    y.settle(most_ticks);
+    x.settle(most_plot_ticks);
+    y.settle(most_plot_ticks);
     std::string text = frame_and_ticks(chart, x, y, offset);
     for (const Series& series : chart.series) text += drawn(series, x, y);
-    return text + legend(chart, offset);
+    return text + plot_legend(chart, offset);
 }
 
 }  // namespace
@@ -94,12 +94,12 @@ std::string colour(std::size_t number)
 
 std::string svg(const std::vector<Chart>& charts)
 {
-    const double total = height * static_cast<double>(charts.size());
+    const double total = plot_height * static_cast<double>(charts.size());
     std::string text = fmt::format(
         "<svg xmlns='http://www.w3.org/2000/svg' width='{0}' height='{1}' viewBox='0 0 {0} {1}' font-family='sans-serif' font-size='12'>\n"
         "<rect width='{0}' height='{1}' fill='white'/>\n",
-        width, total);
-    for (std::size_t i = 0; i < charts.size(); ++i) text += draw(charts[i], height * static_cast<double>(i));
+        plot_width, total);
+    for (std::size_t i = 0; i < charts.size(); ++i) text += draw(charts[i], plot_height * static_cast<double>(i));
     return text + "</svg>\n";
 }
 

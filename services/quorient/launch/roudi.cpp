@@ -12,7 +12,7 @@ namespace quorient::launch {
 
 namespace {
 
-constexpr auto patience = std::chrono::seconds{5};
+constexpr auto roudi_patience = std::chrono::seconds{5};
 constexpr std::size_t endpoints_each = 8;
 
 std::size_t iceoryx_processes(const system::System& system)
@@ -45,10 +45,10 @@ std::string Roudi::start(const system::System& system, Processes& processes)
                              (runtime::run_directory() / "roudi.log").string());
         processes.start();
     }
-    const auto deadline = std::chrono::steady_clock::now() + patience;
+    const auto deadline = std::chrono::steady_clock::now() + roudi_patience;
     while ((life_ = bus::roudi_life()) == 0) {
         if (std::chrono::steady_clock::now() > deadline)
-            return fmt::format("within {} s: {}; the log of the one started here: {}", patience.count(), bus::roudi_silence(),
+            return fmt::format("within {} s: {}; the log of the one started here: {}", roudi_patience.count(), bus::roudi_silence(),
                                (runtime::run_directory() / "roudi.log").string());
         std::this_thread::sleep_for(std::chrono::milliseconds{10});
     }

@@ -45,7 +45,7 @@ std::string trouble_of(const system::System& system, const evaluation::RunObserv
     return fmt::format("isolated {}, the output {}", run.names_of(lane.verdict.isolated_mask), run.names_of(voted.isolated_mask));
 }
 
-std::string error_text(const evaluation::RunObserver& run)
+std::string latest_error_text(const evaluation::RunObserver& run)
 {
     const auto& errors = run.voted().errors;
     return errors.compared == 0 ? std::string{} : fmt::format("error against the truth: {:.1e} rad now, {:.1e} at most", errors.final_rad, errors.largest_rad);
@@ -126,7 +126,7 @@ std::string Screen::standing(std::int64_t now_ns) const
 std::vector<std::string> Screen::lines(const Processes& processes, std::int64_t now_ns) const
 {
     std::vector<std::string> all{fmt::format("{}, {:.1f} s", system_.name, run_.time_s(run_.newest_truth())), standing(now_ns)};
-    if (const auto error = error_text(run_); !error.empty()) all.push_back(error);
+    if (const auto error = latest_error_text(run_); !error.empty()) all.push_back(error);
     const auto add = [&](const std::vector<std::string>& more) { all.insert(all.end(), more.begin(), more.end()); };
     add(lane_lines(system_, run_));
     add(process_lines(processes));

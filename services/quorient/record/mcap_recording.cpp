@@ -11,7 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t queue_bytes = std::size_t{32} << 20U;  // half a minute of a unit at 200 Hz; two such buffers are held
-constexpr auto patience = std::chrono::milliseconds{100};
+constexpr auto write_patience = std::chrono::milliseconds{100};
 
 std::string numbered(const fs::path& file, std::size_t number)
 {
@@ -58,7 +58,7 @@ McapRecording::Result McapRecording::finish()
 void McapRecording::run()
 {
     std::vector<std::uint8_t> batch;
-    while (queue_.take(batch, patience)) {
+    while (queue_.take(batch, write_patience)) {
         SampleQueue::each(batch, [&](const SampleQueue::Header& header, std::span<const std::uint8_t> cdr) { write(header, cdr); });
         if (file_) file_->flush_when_due();
     }

@@ -1,5 +1,6 @@
 #include "viewer_messages.hpp"
 
+#include "quorient/messages/time.hpp"
 #include "ros2_messages.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +13,6 @@ namespace quorient::record {
 
 namespace {
 
-constexpr std::uint64_t second_ns = 1'000'000'000;
 constexpr std::string_view reference_frame = "reference";
 constexpr std::string_view body_frame = "body";
 

@@ -1,5 +1,6 @@
 #include "design_explain.hpp"
 
+#include "cli/json_output.hpp"
 #include "design_report.hpp"
 #include "quorient/design/mission.hpp"
 #include "quorient/design/recognise.hpp"
@@ -20,7 +21,6 @@ namespace {
 
 using design::Figures;
 
-constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 constexpr double same = 5e-4;  // relative: less than can be seen in the table
 
 /// What builders usually take.

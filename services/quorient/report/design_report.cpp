@@ -1,5 +1,6 @@
 #include "design_report.hpp"
 
+#include "cli/json_output.hpp"
 #include "quorient/design/recognise.hpp"
 #include "quorient/messages/units.hpp"
 
@@ -30,9 +31,7 @@ using design::Bounds;
 using design::Design;
 using design::Figures;
 
-constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-
-std::string cell(double value, bool whole = false)
+std::string figure_cell(double value, bool whole = false)
 {
     if (whole) return fmt::format("{:>14.0f}", value);
     if (!std::isfinite(value)) return fmt::format("{:>14}", "-");
@@ -96,8 +95,8 @@ void append_figures(std::string& text, const std::vector<const Figures*>& column
 {
     for (const Row& row : rows_of(*columns.front(), bounds)) {
         fmt::format_to(std::back_inserter(text), "{:<28}", row.name);
-        for (const Figures* figures : columns) text += cell(row.of(*figures), row.whole);
-        text += cell(row.bound, row.whole) + '\n';
+        for (const Figures* figures : columns) text += figure_cell(row.of(*figures), row.whole);
+        text += figure_cell(row.bound, row.whole) + '\n';
     }
 }
 
@@ -234,7 +233,7 @@ std::string removals_text(const geometry::SensorCluster& cluster, const std::vec
         const Figures& figures = removal.figures;
         const std::size_t owner = instruments ? removal.unit : cluster.instrument[removal.unit];
         fmt::format_to(std::back_inserter(text), "{:<14}", fmt::format("{} ({})", removal.unit, cluster.instrument_name[owner]));
-        text += cell(figures.trace) + cell(figures.condition) + "    " + cell(figures.worst_after.empty() ? undefined : figures.worst_after.front().trace);
+        text += figure_cell(figures.trace) + figure_cell(figures.condition) + "    " + figure_cell(figures.worst_after.empty() ? undefined : figures.worst_after.front().trace);
         for (const double figure : {figures.f_d1, figures.f_d2}) text += fmt::format("{:>12}", std::isfinite(figure) ? fmt::format("{:.6f}", figure) : "-");
         text += '\n';
     }

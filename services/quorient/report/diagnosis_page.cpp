@@ -26,7 +26,7 @@ constexpr std::string_view style =
 
 constexpr BandLook rates_look{Spacing::linear, 150};
 constexpr double label_width = 46;
-constexpr int most_ticks = 5;  // their labels have room on a phone
+constexpr int most_page_ticks = 5;  // their labels have room on a phone
 
 /// The compared instruments, by their places in the report.
 std::vector<std::size_t> compared_of(const Report& report)
@@ -42,7 +42,7 @@ TimeSpan span_of(const diagnosis::Plot& plot)
 {
     const auto last = std::find_if(plot.bins.rbegin(), plot.bins.rend(), [](const diagnosis::PlotBin& bin) { return bin.filled; });
     const double length_s = plot.bin_s * static_cast<double>(std::distance(last, plot.bins.rend()));
-    return {plot.first_s, plot.first_s + std::max(1e-3, length_s), label_width, most_ticks};
+    return {plot.first_s, plot.first_s + std::max(1e-3, length_s), label_width, most_page_ticks};
 }
 
 class Page {

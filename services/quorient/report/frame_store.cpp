@@ -5,7 +5,7 @@
 namespace quorient::cli {
 namespace {
 
-constexpr std::size_t most_in_memory = std::size_t{32} << 20U;
+constexpr std::size_t most_bytes_in_memory = std::size_t{32} << 20U;
 
 }  // namespace
 
@@ -19,8 +19,8 @@ bool FrameStore::add(const recording::AlignedFrame& frame)
             const auto rate = static_cast<float>(frame.rate_rad_s[m][k]);
             std::memcpy(record_.data() + sizeof kept + (3 * m + k) * sizeof rate, &rate, sizeof rate);
         }
-    if (!file_ && memory_.size() + record_.size() <= most_in_memory) {
-        if (memory_.empty()) memory_.reserve(most_in_memory);  // growing would hold it twice
+    if (!file_ && memory_.size() + record_.size() <= most_bytes_in_memory) {
+        if (memory_.empty()) memory_.reserve(most_bytes_in_memory);  // growing would hold it twice
         memory_.insert(memory_.end(), record_.begin(), record_.end());
         return true;
     }

@@ -10,11 +10,6 @@ namespace quorient::report {
 
 namespace {
 
-nlohmann::ordered_json or_null(const std::optional<double>& value)
-{
-    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
-}
-
 bool seen(const FaultVerdict& verdict)
 {
     return sees_fault(verdict);
@@ -84,8 +79,8 @@ nlohmann::ordered_json ReplayReport::faults() const
             {"spec", simulation::to_string(fault.spec)}, {"axes", cli::axes_json(fault.spec.axes)}, {"begin_s", fault.spec.start_s}};
         for (std::size_t lane = 0; lane < fault.lanes.size(); ++lane) {
             const auto& reaction = fault.lanes[lane];
-            entry["lanes"][system_.lanes[lane].name] = {{"detected_s", or_null(reaction.detected_s)},
-                                                        {"isolated_s", or_null(reaction.isolated_s)},
+            entry["lanes"][system_.lanes[lane].name] = {{"detected_s", cli::or_null(reaction.detected_s)},
+                                                        {"isolated_s", cli::or_null(reaction.isolated_s)},
                                                         {"isolated", cli::axes_json(reaction.isolated)}};
         }
         list.push_back(std::move(entry));

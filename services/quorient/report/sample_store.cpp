@@ -8,7 +8,7 @@
 namespace quorient::cli {
 namespace {
 
-constexpr std::size_t most_in_memory = (std::size_t{32} << 20U) / sizeof(double);
+constexpr std::size_t most_numbers_in_memory = (std::size_t{32} << 20U) / sizeof(double);
 constexpr std::size_t page_samples = 2048;
 constexpr std::size_t observed = 4096;  // samples from one call of the observer to the next
 
@@ -23,8 +23,8 @@ bool SampleStore::add(const calibration::Sample& sample)
     record_.assign({sample.time_s, sample.interval_s, static_cast<double>(flags)});
     record_.insert(record_.end(), sample.rate.begin(), sample.rate.end());
     ++size_;
-    if (!file_ && memory_.size() + record_size_ <= most_in_memory) {
-        if (memory_.empty()) memory_.reserve(most_in_memory);  // growing would hold it twice
+    if (!file_ && memory_.size() + record_size_ <= most_numbers_in_memory) {
+        if (memory_.empty()) memory_.reserve(most_numbers_in_memory);  // growing would hold it twice
         memory_.insert(memory_.end(), record_.begin(), record_.end());
         return true;
     }

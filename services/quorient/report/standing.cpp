@@ -29,7 +29,7 @@ AxisMask out_of(const Standing& standing)
     return standing.voted ? standing.voted->isolated_mask : verdict ? verdict->isolated_mask : 0;
 }
 
-std::string name_of(const std::map<std::uint32_t, std::string>& names, const char* what, std::uint32_t number)
+std::string known_name(const std::map<std::uint32_t, std::string>& names, const char* what, std::uint32_t number)
 {
     const auto found = names.find(number);
     return found != names.end() ? found->second : fmt::format("{} {}", what, number);
@@ -77,7 +77,7 @@ std::string attitude_text(const Standing& standing, std::int64_t now_ns)
         standing.level_since_ns ? fmt::format(" since {:.0f} s", static_cast<double>(now_ns - *standing.level_since_ns) * 1e-9) : std::string{};
     const int vouching = std::popcount(voted.vouching_mask);
     return fmt::format("{}: attitude {}{}, from {}, primary lane {}, {} lane{} vouch{}", verdict, to_string(level), since,
-                       name_of(standing.voters, "voter", voted.voter), name_of(standing.lanes, "lane", voted.primary_lane), vouching,
+                       known_name(standing.voters, "voter", voted.voter), known_name(standing.lanes, "lane", voted.primary_lane), vouching,
                        vouching == 1 ? "" : "s", vouching == 1 ? "es" : "");
 }
 
@@ -99,8 +99,8 @@ nlohmann::ordered_json standing_json(const Standing& standing, std::int64_t now_
     if (standing.voted) {
         json["good"] = is_vouched(*standing.voted);
         json["level"] = to_string(level_of(*standing.voted));
-        json["owner"] = name_of(standing.voters, "voter", standing.voted->voter);
-        json["primary_lane"] = name_of(standing.lanes, "lane", standing.voted->primary_lane);
+        json["owner"] = known_name(standing.voters, "voter", standing.voted->voter);
+        json["primary_lane"] = known_name(standing.lanes, "lane", standing.voted->primary_lane);
     }
     if (standing.level_since_ns) json["level_since_s"] = static_cast<double>(now_ns - *standing.level_since_ns) * 1e-9;
     if (const auto* verdict = decisive(standing)) json["detectable_remaining"] = verdict->detectable_remaining;

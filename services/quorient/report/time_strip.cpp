@@ -8,10 +8,10 @@ namespace quorient::cli {
 namespace {
 
 constexpr double file_width = 560;  // narrow, so that the letters stay readable where the file is shown small
-constexpr double right = 8;
+constexpr double right_margin = 8;
 constexpr double title_height = 20;
 constexpr double legend_height = 13;
-constexpr double bottom = 30;
+constexpr double bottom_margin = 30;
 constexpr double height_of_tick = 24;
 constexpr double bar_height = 16;
 constexpr double bar_label_height = 14;
@@ -23,16 +23,16 @@ constexpr std::string_view file_style =
 
 double file_plot_width(double left)
 {
-    return file_width - left - right;
+    return file_width - left - right_margin;
 }
 
-/// From 0 at the left edge to 1 at the right one.
+/// From 0 at the left edge to 1 at the right_margin one.
 double share_of(const TimeSpan& span, double time_s)
 {
     return std::clamp((time_s - span.from_s) / std::max(1e-9, span.to_s - span.from_s), 0.0, 1.0);
 }
 
-double percent(const TimeSpan& span, double time_s)
+double percent_of(const TimeSpan& span, double time_s)
 {
     return 100 * share_of(span, time_s);
 }
@@ -42,7 +42,7 @@ std::string time_axis(const TimeSpan& span, double from, double base)
     std::string text;
     const double step = round_step(std::max(1e-9, span.to_s - span.from_s), span.most_ticks);
     for (double tick = std::ceil(span.from_s / step) * step; tick <= span.to_s + 1e-9; tick += step) {
-        const double x = percent(span, tick);
+        const double x = percent_of(span, tick);
         text += fmt::format("<line x1='{0:.2f}%' x2='{0:.2f}%' y1='{1}' y2='{2:.1f}' class='g'/><text x='{0:.2f}%' y='{3:.1f}' text-anchor='middle'>{4:g}</text>\n", x,
                             from, base, base + 13, std::abs(tick) < step / 1000 ? 0.0 : tick);
     }
@@ -50,7 +50,7 @@ std::string time_axis(const TimeSpan& span, double from, double base)
 }
 
 /// In as many rows as have room in a file.
-Strip legend(const std::vector<Band>& bands, const TimeSpan& span)
+Strip strip_legend(const std::vector<Band>& bands, const TimeSpan& span)
 {
     Strip made;
     double x = 0;
@@ -130,8 +130,8 @@ std::string curves(const std::vector<Band>& bands, const TimeSpan& span, const S
 std::string bar(const TimeSpan& span, double y, double from_s, double to_s, const std::string& colour)
 {
     const double least_percent = 0.4;  // so that the shortest one is seen
-    const double from = std::min(percent(span, from_s), 100 - least_percent);
-    return fmt::format("<rect x='{:.2f}%' y='{:.1f}' width='{:.2f}%' height='{}' fill='{}'/>\n", from, y + 2, std::max(least_percent, percent(span, to_s) - from),
+    const double from = std::min(percent_of(span, from_s), 100 - least_percent);
+    return fmt::format("<rect x='{:.2f}%' y='{:.1f}' width='{:.2f}%' height='{}' fill='{}'/>\n", from, y + 2, std::max(least_percent, percent_of(span, to_s) - from),
                        bar_height - 4, colour);
 }
 
@@ -147,7 +147,7 @@ Strip band_strip(const std::string& title, const std::string& unit, const TimeSp
     const Strip keys = legend(bands, span);
     const double from = keys.height;
     const Scale scale = scale_of(bands, look);
-    return {title, unit, span.left, from + look.height + bottom,
+    return {title, unit, span.left, from + look.height + bottom_margin,
             keys.body + time_axis(span, from, from + look.height) + value_axis(scale, from) + curves(bands, span, scale, from, look.height)};
 }
 
@@ -161,7 +161,7 @@ Strip bar_strip(const std::string& title, const TimeSpan& span, const std::vecto
         text += bar(span, y + bar_label_height, one.from_s, one.to_s, one.colour);
         y += bar_label_height + bar_height;
     }
-    return {title, {}, span.left, base + bottom, text};
+    return {title, {}, span.left, base + bottom_margin, text};
 }
 
 Strip row_strip(const std::string& title, const TimeSpan& span, const std::vector<BarRow>& rows)
@@ -175,11 +175,11 @@ Strip row_strip(const std::string& title, const TimeSpan& span, const std::vecto
             text += bar(span, y, one.from_s, one.to_s, one.colour);
             const double room = file_plot_width(span.left) * (share_of(span, one.to_s) - share_of(span, one.from_s));
             if (room > letter_width * static_cast<double>(one.text.size() + 2))
-                text += fmt::format("<text x='{:.2f}%' dx='4' y='{:.1f}' class='o'>{}</text>\n", percent(span, one.from_s), y + bar_height - 4, markup_escaped(one.text));
+                text += fmt::format("<text x='{:.2f}%' dx='4' y='{:.1f}' class='o'>{}</text>\n", percent_of(span, one.from_s), y + bar_height - 4, markup_escaped(one.text));
         }
         y += bar_height;
     }
-    return {title, {}, span.left, base + bottom, text};
+    return {title, {}, span.left, base + bottom_margin, text};
 }
 
 std::string figure_element(const Strip& strip)
@@ -187,7 +187,7 @@ std::string figure_element(const Strip& strip)
     const std::string title = markup_escaped(strip.unit.empty() ? strip.title : fmt::format("{} [{}]", strip.title, strip.unit));
     return fmt::format("<figure><figcaption>{0}</figcaption>\n<svg xmlns='http://www.w3.org/2000/svg' role='img' aria-label='{0}' height='{1}' "
                        "style='margin:6px 0 0 {2}px;width:calc(100% - {3}px)'>\n{4}</svg></figure>\n",
-                       title, strip.height, strip.left, strip.left + right, strip.body);
+                       title, strip.height, strip.left, strip.left + right_margin, strip.body);
 }
 
 std::string svg_file(const std::string& title, const std::vector<Strip>& strips)

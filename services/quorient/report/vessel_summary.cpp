@@ -1,5 +1,6 @@
 #include "vessel_summary.hpp"
 
+#include "cli/json_output.hpp"
 #include "quorient/bus/settings.hpp"
 
 #include <fmt/format.h>
@@ -10,7 +11,7 @@ namespace {
 
 constexpr double least_share_of_verdicts = 0.9;
 
-std::string name_of(const evaluation::RunObserver& run, std::size_t axis)
+std::string observed_axis(const evaluation::RunObserver& run, std::size_t axis)
 {
     return run.names_of(axis_bit(axis));
 }
@@ -27,22 +28,17 @@ std::string reaction_text(const evaluation::Spell& fault, const evaluation::Reac
     return fmt::format("isolated at {:.2f} s ({:.2f} s after){}", *reaction.isolated_s, *reaction.isolated_s - fault.begin_s, trusted);
 }
 
-nlohmann::ordered_json or_null(const std::optional<double>& value)
-{
-    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
-}
-
 nlohmann::ordered_json lane_json(const evaluation::RunObserver& run, const evaluation::LaneRecord& lane)
 {
     nlohmann::ordered_json json{{"vendor", bus::to_string(lane.vendor)}, {"verdicts", lane.verdicts}, {"suspicious", lane.suspicious}};
     json["faults"] = nlohmann::ordered_json::array();
     for (const evaluation::Spell& fault : run.faults().all()) {
         const auto made = reaction(fault, lane.isolated);
-        json["faults"].push_back({{"isolated_s", or_null(made.isolated_s)}, {"trusted_s", or_null(made.trusted_s)}});
+        json["faults"].push_back({{"isolated_s", cli::or_null(made.isolated_s)}, {"trusted_s", cli::or_null(made.trusted_s)}});
     }
     json["false_isolations"] = nlohmann::ordered_json::array();
     for (const evaluation::Spell& spell : false_isolations(run.faults(), lane.isolated))
-        json["false_isolations"].push_back({{"axis", spell.axis}, {"begin_s", spell.begin_s}, {"end_s", or_null(spell.end_s)}});
+        json["false_isolations"].push_back({{"axis", spell.axis}, {"begin_s", spell.begin_s}, {"end_s", cli::or_null(spell.end_s)}});
     return json;
 }
 
@@ -52,7 +48,7 @@ void judge(const system::System& system, const evaluation::RunObserver& run, con
         failures.push_back(fmt::format("lane {} gave {} verdicts for {} frames", lane.name, lane.verdicts, run.truth_frames()));
     for (const evaluation::Spell& fault : run.faults().all()) {
         const auto made = reaction(fault, lane.isolated);
-        const auto what = fmt::format("lane {}, {}, faulty {}", lane.name, name_of(run, fault.axis), period(fault));
+        const auto what = fmt::format("lane {}, {}, faulty {}", lane.name, observed_axis(run, fault.axis), period(fault));
         if (!made.isolated_s || *made.isolated_s - fault.begin_s > *system.expectations.each_fault_within_s)
             failures.push_back(
                 fmt::format("{}: {}, {} s allowed", what, reaction_text(fault, made), *system.expectations.each_fault_within_s));
@@ -60,7 +56,7 @@ void judge(const system::System& system, const evaluation::RunObserver& run, con
             failures.push_back(fmt::format("{}: trusted again at {:.2f} s", what, *made.trusted_s));
     }
     for (const evaluation::Spell& spell : false_isolations(run.faults(), lane.isolated))
-        failures.push_back(fmt::format("lane {} isolated {} {}, without a fault", lane.name, name_of(run, spell.axis), period(spell)));
+        failures.push_back(fmt::format("lane {} isolated {} {}, without a fault", lane.name, observed_axis(run, spell.axis), period(spell)));
 }
 
 }  // namespace
@@ -70,7 +66,7 @@ std::string vessel_text(const system::System& system, const evaluation::RunObser
     std::string text = fmt::format("{}: {} frames\n", system.name, run.truth_frames());
     if (run.faults().all().empty()) text += "fault    none\n";
     for (const evaluation::Spell& fault : run.faults().all()) {
-        text += fmt::format("fault    {} {}\n", name_of(run, fault.axis), period(fault));
+        text += fmt::format("fault    {} {}\n", observed_axis(run, fault.axis), period(fault));
         for (const evaluation::LaneRecord& lane : run.lanes())
             text += fmt::format("  lane {:<4}{:<11}{}\n", lane.name, bus::to_string(lane.vendor),
                                 reaction_text(fault, reaction(fault, lane.isolated)));
@@ -88,7 +84,7 @@ nlohmann::ordered_json vessel_json(const system::System& system, const evaluatio
     nlohmann::ordered_json json{{"system", system.name}, {"frames", run.truth_frames()}};
     json["faults"] = nlohmann::ordered_json::array();
     for (const evaluation::Spell& fault : run.faults().all())
-        json["faults"].push_back({{"axis", fault.axis}, {"begin_s", fault.begin_s}, {"end_s", or_null(fault.end_s)}});
+        json["faults"].push_back({{"axis", fault.axis}, {"begin_s", fault.begin_s}, {"end_s", cli::or_null(fault.end_s)}});
     for (const evaluation::LaneRecord& lane : run.lanes()) json["lanes"][lane.name] = lane_json(run, lane);
     return json;
 }

@@ -30,7 +30,7 @@ struct AssessOptions {
     bool json = false;  ///< the only format
 };
 
-std::string_view name_of(fdi::Outcome outcome)
+std::string_view outcome_name(fdi::Outcome outcome)
 {
     return outcome_names[static_cast<std::size_t>(outcome)];
 }
@@ -71,7 +71,7 @@ Json row_json(std::size_t row, const fdi::Assessment& assessment, std::size_t ax
 
     Json object;
     object["row"] = row;
-    object["outcome"] = name_of(assessment.outcome);
+    object["outcome"] = outcome_name(assessment.outcome);
     object["isolated"] = axes_json(assessment.outcome == fdi::Outcome::isolated ? assessment.isolated : 0);
     object["candidates"] = std::move(candidates);
     object["statistic"] = assessment.statistic;
@@ -106,7 +106,7 @@ void run(const AssessOptions& options, const Verb& verb)
         Json object = row_json(number, assessment, cluster->size());
         for (const fdi::Detail& detail : (*detector)->details(assessment)) object[std::string(detail.name)] = json_of(detail.value);
         fmt::print("{}\n", dump(object));
-        as_expected = as_expected && (options.check.empty() || options.check == name_of(assessment.outcome));
+        as_expected = as_expected && (options.check.empty() || options.check == outcome_name(assessment.outcome));
     }
     if (number == 0) fail(input->nothing());
     if (!as_expected) throw Exit{ExitCode::not_as_asked};

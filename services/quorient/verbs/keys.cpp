@@ -1,5 +1,6 @@
 #include "cli/program.hpp"
 #include "cli/system_options.hpp"
+#include "quorient/messages/time.hpp"
 #include "quorient/runtime/clock.hpp"
 #include "quorient/security/authority.hpp"
 #include "quorient/system/members.hpp"
@@ -20,7 +21,6 @@ using security::IssuedIdentity;
 using security::Member;
 using security::Role;
 
-constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr double day_s = 86'400;
 
 struct KeysOptions {

@@ -5,6 +5,7 @@
 #include "cli/output_file.hpp"
 #include "cli/system_options.hpp"
 #include "quorient/evaluation/run_observer.hpp"
+#include "quorient/messages/time.hpp"
 #include "quorient/runtime/event_loop.hpp"
 #include "quorient/runtime/heartbeat.hpp"
 #include "quorient/runtime/signals.hpp"
@@ -30,7 +31,6 @@ namespace quorient::cli {
 
 namespace {
 
-constexpr std::int64_t second_ns = 1'000'000'000;
 
 /// After the source has ended: the last frame's way through the pipeline, then everybody's goodbye.
 constexpr std::int64_t linger_ns = second_ns;

@@ -1,5 +1,6 @@
 #include "layout_report.hpp"
 
+#include "cli/json_output.hpp"
 #include "quorient/geometry/figures.hpp"
 #include "quorient/geometry/redundancy.hpp"
 
@@ -15,8 +16,6 @@
 namespace quorient::cli {
 
 namespace {
-
-constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 struct Report {
     geometry::Axes axes;
@@ -54,7 +53,7 @@ Report report_on(const geometry::SensorCluster& cluster, AxisMask used)
     return report;
 }
 
-std::string cell(double value)
+std::string report_cell(double value)
 {
     return std::isfinite(value) ? fmt::format("{:>10.6f}", value) : fmt::format("{:>10}", "-");
 }
@@ -64,7 +63,7 @@ void append_matrix(std::string& text, std::string_view title, const Eigen::Dense
 {
     fmt::format_to(std::back_inserter(text), "{}\n", title);
     for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
-        for (Eigen::Index column = 0; column < matrix.cols(); ++column) text += cell(matrix.derived().coeff(row, column));
+        for (Eigen::Index column = 0; column < matrix.cols(); ++column) text += report_cell(matrix.derived().coeff(row, column));
         text += '\n';
     }
 }
@@ -103,22 +102,22 @@ std::string layout_text(const std::string& name, const geometry::SensorCluster& 
     fmt::format_to(std::back_inserter(text), "{:>4} {:>10} {:>10}{:>10}{:>10}\n", "axis", "instrument", "x", "y", "z");
     for (std::size_t row = 0; row < report.axis.size(); ++row) {
         const auto axis = report.axes.row(static_cast<Eigen::Index>(row));
-        fmt::format_to(std::back_inserter(text), "{:>4} {:>10} {}{}{}\n", report.axis[row], report.instrument[row], cell(axis(0)),
-                       cell(axis(1)), cell(axis(2)));
+        fmt::format_to(std::back_inserter(text), "{:>4} {:>10} {}{}{}\n", report.axis[row], report.instrument[row], report_cell(axis(0)),
+                       report_cell(axis(1)), report_cell(axis(2)));
     }
 
     fmt::format_to(std::back_inserter(text), "\naccuracy, (H'H)^-1 for unit noise\n  eigenvalues {}{}{}\n",
-                   cell(report.accuracy.eigenvalues(0)), cell(report.accuracy.eigenvalues(1)), cell(report.accuracy.eigenvalues(2)));
-    fmt::format_to(std::back_inserter(text), "  trace       {}\n  volume      {}\n  condition   {}\n", cell(report.accuracy.trace),
-                   cell(report.accuracy.volume), cell(report.accuracy.condition));
-    fmt::format_to(std::back_inserter(text), "smallest angle between axes, as lines {} deg\n\n", cell(report.minimum_angle_deg));
+                   report_cell(report.accuracy.eigenvalues(0)), report_cell(report.accuracy.eigenvalues(1)), report_cell(report.accuracy.eigenvalues(2)));
+    fmt::format_to(std::back_inserter(text), "  trace       {}\n  volume      {}\n  condition   {}\n", report_cell(report.accuracy.trace),
+                   report_cell(report.accuracy.volume), report_cell(report.accuracy.condition));
+    fmt::format_to(std::back_inserter(text), "smallest angle between axes, as lines {} deg\n\n", report_cell(report.minimum_angle_deg));
 
     append_matrix(text, "parity matrix V, minimal set (eq. 8)", report.parity_matrix);
     append_matrix(text, "J of the minimal set", report.detection_index.transpose());
     append_matrix(text, "\nparity equations, one per axis", report.parity_equations);
     append_matrix(text, "J of the parity equations", report.isolation_index);
-    fmt::format_to(std::back_inserter(text), "\nF_d1 {}\nF_d2 {}\nF_d2, partner axes excluded {}\n", cell(report.f_d1), cell(report.f_d2),
-                   cell(report.f_d2_partner_excluded));
+    fmt::format_to(std::back_inserter(text), "\nF_d1 {}\nF_d2 {}\nF_d2, partner axes excluded {}\n", report_cell(report.f_d1), report_cell(report.f_d2),
+                   report_cell(report.f_d2_partner_excluded));
     fmt::format_to(std::back_inserter(text), "simultaneous axis faults of any size: {} detectable, {} isolable from one sample\n",
                    report.detectable, report.isolable);
     return text;

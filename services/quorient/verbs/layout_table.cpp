@@ -1,5 +1,6 @@
 #include "layout_table.hpp"
 
+#include "cli/json_output.hpp"
 #include "quorient/geometry/figures.hpp"
 #include "quorient/geometry/layouts.hpp"
 
@@ -15,8 +16,6 @@
 namespace quorient::cli {
 
 namespace {
-
-constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 geometry::SensorCluster named(std::string_view name)
 {
@@ -127,7 +126,7 @@ Figures figures_of(const AccuracyCase& one)
     return mean;
 }
 
-std::string cell(double value)
+std::string table_cell(double value)
 {
     if (!std::isfinite(value)) return fmt::format("{:>12}", "-");
     return fmt::format("{:>12.4f}", std::abs(value) < 5e-5 ? 0 : value);
@@ -142,8 +141,8 @@ void append_table_4(std::string& text)
                    "difference", "by eq. (42)", "F_d1", "reason");
     for (const Architecture& row : architectures()) {
         const Merit merit = merit_of(row);
-        fmt::format_to(std::back_inserter(text), "{:<4} {:<16}{}{}{}{}{}  {}\n", row.matrix, row.layout, cell(row.printed),
-                       cell(merit.compared()), cell(merit.compared() - row.printed), cell(merit.literal), cell(merit.f_d1), row.reason);
+        fmt::format_to(std::back_inserter(text), "{:<4} {:<16}{}{}{}{}{}  {}\n", row.matrix, row.layout, table_cell(row.printed),
+                       table_cell(merit.compared()), table_cell(merit.compared() - row.printed), table_cell(merit.literal), table_cell(merit.f_d1), row.reason);
     }
 }
 
@@ -157,7 +156,7 @@ void append_accuracy(std::string& text)
         for (std::size_t k = 0; k < ours.size(); ++k) {
             if (std::isnan(one.printed[k])) continue;
             fmt::format_to(std::back_inserter(text), "{:<14}{:<22}{:<10}{}{}{}  {}\n", one.layout, one.removed, figure_names[k],
-                           cell(one.printed[k]), cell(ours[k]), cell(ours[k] - one.printed[k]),
+                           table_cell(one.printed[k]), table_cell(ours[k]), table_cell(ours[k] - one.printed[k]),
                            figure_names[k] == one.wrong_figure ? one.reason : "");
         }
     }

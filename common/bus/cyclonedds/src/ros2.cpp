@@ -2,6 +2,7 @@
 
 #include "quorient/bus/ros2.hpp"
 
+#include "quorient/messages/time.hpp"
 #include "ros2_msgs.h"
 
 #include <algorithm>
@@ -12,7 +13,6 @@ namespace quorient::bus::cyclonedds {
 
 namespace {
 
-constexpr std::int64_t second_ns = 1'000'000'000;
 
 /// Times before 1970 have a negative second and a positive rest.
 void put(std::int64_t stamp_ns, builtin_interfaces_msg_dds__Time_& time)

@@ -2,6 +2,7 @@
 
 #include "quorient/bus/ros2.hpp"
 
+#include "quorient/messages/time.hpp"
 #include "ros2_msgsPubSubTypes.hpp"
 #include "tolerant_type.hpp"
 
@@ -15,7 +16,6 @@ namespace {
 using VendorImu = sensor_msgs::msg::dds_::Imu_;
 using VendorDiagnostics = diagnostic_msgs::msg::dds_::DiagnosticArray_;
 
-constexpr std::int64_t second_ns = 1'000'000'000;
 
 /// Times before 1970 have a negative second and a positive rest.
 void put(std::int64_t stamp_ns, builtin_interfaces::msg::dds_::Time_& time)

@@ -29,9 +29,9 @@ constexpr int onset_rounds = 6;
 constexpr std::size_t shortest_gated = 8;
 
 /// Between two ways to reckon the same.
-constexpr double rounding = 1e-6;
+constexpr double explained_rounding = 1e-6;
 
-constexpr double default_margin = 1.25;
+constexpr double accumulating_margin = 1.25;
 constexpr double default_false_alarms_per_hour = 0.1;
 
 constexpr std::size_t stride_of(std::size_t window)
@@ -91,7 +91,7 @@ AccumulatingDetector::AccumulatingDetector(const DetectorSettings& settings, con
       gated_(std::move(gated)),
       all_(cluster.all()),
       instruments_alone_(settings.instruments),
-      margin_(settings.margin.value_or(default_margin))
+      margin_(settings.margin.value_or(accumulating_margin))
 {
     const double frames_per_hour = 3600 / cluster.interval_s;
     false_alarms_per_hour_ = settings.pfa ? *settings.pfa * frames_per_hour : default_false_alarms_per_hour;
@@ -131,7 +131,7 @@ double AccumulatingDetector::most_possible(std::size_t window, const Limits& lim
 {
     double largest = sums_.largest_chi_square(window);
     if (gated_ && window >= shortest_gated) largest = std::max(largest, gated_->largest_chi_square(window));
-    return std::sqrt(largest * (1 + rounding) / limits.axis);
+    return std::sqrt(largest * (1 + explained_rounding) / limits.axis);
 }
 
 AccumulatingDetector::Finding AccumulatingDetector::examine(const ArraySums& sums, std::size_t window, const Limits& limits) const
@@ -171,7 +171,7 @@ void AccumulatingDetector::weigh(std::size_t place, const ArraySums::Fit& fit, c
     const InstrumentArray::Instrument& instrument = sums_.array()[place];
     const double most_explained = fit.chi_square(place);
     // No axis explains more than the whole instrument: where even that is less than what is known, nothing changes.
-    if (most_explained * (1 + rounding) < limits.axis * finding.second * finding.second) return;
+    if (most_explained * (1 + explained_rounding) < limits.axis * finding.second * finding.second) return;
     const auto [u, q] = fit.contradiction(place);
     double most = 0;
     Hypothesis likeliest{.instrument = place};

@@ -1,6 +1,7 @@
 #include "quorient/fdi/instrument_array.hpp"
 
 #include "quorient/geometry/redundancy.hpp"
+#include "verdict/near_range.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -9,14 +10,11 @@
 namespace quorient::fdi {
 namespace {
 
-/// An axis this close to its range may be beyond it …
-constexpr double saturation = 0.975;
-
-/// … by a standard deviation of this times its range.
+/// An axis near its range may be beyond it, by a standard deviation of this times its range.
 constexpr double excess = 0.5;
 
 /// Two covariances that differ by less, as a share, are those of the same axes in other directions.
-constexpr double rounding = 1e-12;
+constexpr double covariance_rounding = 1e-12;
 
 void weigh(const geometry::SensorCluster& cluster, const geometry::AxisVector& variance, InstrumentArray::Instrument& instrument)
 {
@@ -35,7 +33,7 @@ void weigh(const geometry::SensorCluster& cluster, const geometry::AxisVector& v
 /// Place of the first instrument with the covariance of this one, which is in the list and weighed, as all before it.
 std::size_t first_alike(const std::vector<InstrumentArray::Instrument>& instruments, const InstrumentArray::Instrument& instrument)
 {
-    const auto alike = [&](const auto& other) { return other.covariance.isApprox(instrument.covariance, rounding); };
+    const auto alike = [&](const auto& other) { return other.covariance.isApprox(instrument.covariance, covariance_rounding); };
     return static_cast<std::size_t>(std::find_if(instruments.begin(), instruments.end(), alike) - instruments.begin());
 }
 
@@ -104,8 +102,7 @@ AxisMask InstrumentArray::near_range(const Measurement& measurement) const
         if (!compared(m)) continue;
         for (std::size_t i = 0; i < instruments_[m].size; ++i) {
             const std::size_t axis = instruments_[m].axis[i];
-            const double range = range_(static_cast<Eigen::Index>(axis)) * measurement.interval_s;
-            if (range > 0 && std::abs(measurement.increment[axis]) > saturation * range) near |= axis_bit(axis);
+            if (is_near_range(measurement.increment[axis], range_(static_cast<Eigen::Index>(axis)), measurement.interval_s)) near |= axis_bit(axis);
         }
     }
     return near;

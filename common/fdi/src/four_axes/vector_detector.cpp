@@ -8,7 +8,7 @@
 namespace quorient::fdi {
 namespace {
 
-constexpr double default_margin = 3;
+constexpr double vector_margin = 3;
 
 /// Errors of the one-frame predictions are forgotten with this weight: the last sixteen or so count.
 constexpr double newest_weight = 1.0 / 16;
@@ -40,7 +40,7 @@ tl::expected<std::unique_ptr<VectorDetector>, std::string> VectorDetector::make(
 {
     const auto made = geometry_of(settings, cluster, "vector");
     if (!made) return tl::unexpected(made.error());
-    return std::unique_ptr<VectorDetector>(new VectorDetector(*made, settings.margin.value_or(default_margin)));
+    return std::unique_ptr<VectorDetector>(new VectorDetector(*made, settings.margin.value_or(vector_margin)));
 }
 
 VectorDetector::VectorDetector(const Geometry& made, double margin)

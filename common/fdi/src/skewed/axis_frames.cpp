@@ -1,14 +1,10 @@
 #include "skewed/axis_frames.hpp"
 
+#include "verdict/near_range.hpp"
+
 #include <cmath>
 
 namespace quorient::fdi::skewed {
-namespace {
-
-constexpr double saturation = 0.975;
-
-}  // namespace
-
 bool AxisFrames::add(const Measurement& measurement)
 {
     if (!(measurement.interval_s > 0)) return false;
@@ -24,7 +20,7 @@ bool AxisFrames::add(const Measurement& measurement)
             continue;
         }
         building_.rate[i] += increment;
-        if (std::abs(increment) > saturation * cluster_.range(static_cast<Eigen::Index>(i)) * measurement.interval_s) building_.near_range.add(i);
+        if (is_near_range(increment, cluster_.range(static_cast<Eigen::Index>(i)), measurement.interval_s)) building_.near_range.add(i);
     }
     building_.interval_s += measurement.interval_s;
     if (!grid_.completes()) return false;

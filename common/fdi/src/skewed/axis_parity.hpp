@@ -8,6 +8,9 @@ namespace quorient::fdi::skewed {
 using AxisSet = field::InstrumentSet;  ///< bit i stands for axis i, as in AxisMask
 using PerAxis = std::array<double, max_axes>;
 
+/// The class' limits are those of one of three instruments, whose parity has this part of a fault's square.
+inline constexpr double of_three = 2.0 / 3;
+
 /// Whether these axes measure all three directions.
 bool spans_space(const geometry::Axes& axes, AxisSet set);
 

@@ -4,13 +4,6 @@
 #include "field/windows.hpp"
 
 namespace quorient::fdi::skewed {
-namespace {
-
-/// The class' limits are those of one of three instruments, whose parity has this part of a fault's square.
-constexpr double of_three = 2.0 / 3;
-
-}  // namespace
-
 AxisStart::AxisStart(const geometry::Axes& axes, double interval_s, const ClassFigures& figures)
     : axes_(axes),
       count_(static_cast<std::size_t>(axes.rows())),

@@ -9,9 +9,6 @@
 namespace quorient::fdi {
 namespace {
 
-/// The class' limits are those of one of three instruments, whose parity has this part of a fault's square.
-constexpr double of_three = 2.0 / 3;
-
 Diagnosis kind_of(field::Filter filter)
 {
     return filter == field::Filter::gain ? Diagnosis::gain : Diagnosis::bias;

@@ -1,5 +1,7 @@
 #include "verdict/axis_health.hpp"
 
+#include "verdict/near_range.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -12,7 +14,6 @@ constexpr int absent_of_32 = 8;
 constexpr std::uint32_t last_8 = 0xff;
 
 constexpr double beyond_range = 1.02;
-constexpr double near_range = 0.975;
 constexpr double others_range = 0.8;
 
 constexpr unsigned least_repeats = 4;
@@ -25,7 +26,7 @@ constexpr double least_motion = 1e-7;  ///< rad/s; m/s^2: more than rounding
 constexpr double rarely_repeating_quanta = 3;
 
 /// An increment is a rate times an interval: their quotient is the rate again up to rounding.
-constexpr double rounding = 1e-12;
+constexpr double quotient_rounding = 1e-12;
 
 /// An axis's noise is known after this many frames that brought something new.
 constexpr unsigned habit_frames = 50;
@@ -85,7 +86,7 @@ void AxisHealth::follow(const Measurement& measurement, std::size_t axis)
 {
     Run& run = run_[axis];
     const double rate = measurement.increment[axis] / measurement.interval_s;
-    const bool same = run.known && std::abs(rate - run.rate) <= rounding * std::abs(rate) && !is_near_range(measurement, axis);
+    const bool same = run.known && std::abs(rate - run.rate) <= quotient_rounding * std::abs(rate) && !is_near_range(measurement, axis);
     if (same) return repeat(measurement, axis);
     learn(axis, rate);
     const OthersView::Range& others = others_.of(axis);
@@ -115,7 +116,7 @@ void AxisHealth::learn(std::size_t axis, double rate)
     Habit& habit = habit_[axis];
     const Run& run = run_[axis];
     const double step = std::abs(rate - run.rate);
-    if (run.known && step > rounding * std::abs(rate) && (habit.quantum == 0 || step < habit.quantum)) habit.quantum = step;
+    if (run.known && step > quotient_rounding * std::abs(rate) && (habit.quantum == 0 || step < habit.quantum)) habit.quantum = step;
     const OthersView::Range& others = others_.of(axis);
     if (!others.known) return;
     const double difference = rate - (others.low + others.high) / 2;
@@ -171,8 +172,7 @@ double AxisHealth::visible_motion(std::size_t axis) const
 
 bool AxisHealth::is_near_range(const Measurement& measurement, std::size_t axis) const
 {
-    const double limit = cluster_.range(static_cast<Eigen::Index>(axis)) * measurement.interval_s;
-    return limit > 0 && std::abs(measurement.increment[axis]) >= near_range * limit;
+    return fdi::is_near_range(measurement.increment[axis], cluster_.range(static_cast<Eigen::Index>(axis)), measurement.interval_s);
 }
 
 bool AxisHealth::is_railed(const Measurement& measurement, std::size_t axis) const

@@ -10,7 +10,7 @@ using namespace configuration;
 
 namespace {
 
-using Kind = MotionSection::Kind;
+using MotionKind = MotionSection::Kind;
 using simulation::Coning;
 
 constexpr std::array<settings::Setting<Coning>, 4> coning{{
@@ -31,7 +31,7 @@ constexpr std::array<settings::Setting<MotionSection>, 3> random{{
     {"seed", &MotionSection::seed, "", {}, "The same seed gives the same motion."},
 }};
 
-template <Kind kind>
+template <MotionKind kind>
 bool is(const MotionSection& motion)
 {
     return motion.kind == kind;
@@ -43,19 +43,19 @@ const Table<MotionSection>& motion_table()
 {
     static const Table<MotionSection> table{
         "How the simulated body turns.",
-        {word<MotionSection, Kind>({.name = "kind", .sentence = "Form of the motion."}, "motion", &MotionSection::kind,
-                                   {{"rest", Kind::rest},
-                                    {"turn", Kind::turn},
-                                    {"coning", Kind::coning},
-                                    {"classic-coning", Kind::classic_coning},
-                                    {"random", Kind::random}})},
-        {{"kind: turn", "A constant rate about a fixed axis.", is<Kind::turn>,
+        {word<MotionSection, MotionKind>({.name = "kind", .sentence = "Form of the motion."}, "motion", &MotionSection::kind,
+                                   {{"rest", MotionKind::rest},
+                                    {"turn", MotionKind::turn},
+                                    {"coning", MotionKind::coning},
+                                    {"classic-coning", MotionKind::classic_coning},
+                                    {"random", MotionKind::random}})},
+        {{"kind: turn", "A constant rate about a fixed axis.", is<MotionKind::turn>,
           value({.name = "rate_deg_s", .unit = "deg/s", .sentence = "Rate in the body frame."}, &MotionSection::rate_deg_s)},
-         {"kind: coning", "The formal motion of paper 003, eqs 46-48.", is<Kind::coning>,
+         {"kind: coning", "The formal motion of paper 003, eqs 46-48.", is<MotionKind::coning>,
           all_of(&MotionSection::coning, record<Coning>(coning))},
-         {"kind: classic-coning", "The body's x axis on a cone about the reference's x axis, without spin.", is<Kind::classic_coning>,
+         {"kind: classic-coning", "The body's x axis on a cone about the reference's x axis, without spin.", is<MotionKind::classic_coning>,
           record<MotionSection>(classic_coning)},
-         {"kind: random", "Three successive rotations whose angles are sums of sinusoids.", is<Kind::random>,
+         {"kind: random", "Three successive rotations whose angles are sums of sinusoids.", is<MotionKind::random>,
           record<MotionSection>(random)}}};
     return table;
 }
@@ -63,15 +63,15 @@ const Table<MotionSection>& motion_table()
 tl::expected<simulation::Motion, std::string> motion_of(const MotionSection& section)
 {
     switch (section.kind) {
-        case Kind::turn:
+        case MotionKind::turn:
             return simulation::checked(simulation::Turn{Eigen::Vector3d(section.rate_deg_s.data()) * degree});
-        case Kind::coning:
+        case MotionKind::coning:
             return simulation::checked(section.coning);
-        case Kind::classic_coning:
+        case MotionKind::classic_coning:
             return simulation::checked(simulation::ClassicConing{section.half_angle_deg * degree, section.frequency_hz});
-        case Kind::random:
+        case MotionKind::random:
             return simulation::checked(simulation::RandomMotion{section.bandwidth_hz, section.rms_deg_s * degree, section.seed});
-        case Kind::rest:
+        case MotionKind::rest:
             break;
     }
     return simulation::checked(simulation::Rest{});

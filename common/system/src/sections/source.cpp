@@ -12,7 +12,7 @@ using namespace configuration;
 
 namespace {
 
-using Kind = SourceSection::Kind;
+using SourceKind = SourceSection::Kind;
 
 void read_faults(Section& section, SourceSection& source)
 {
@@ -158,7 +158,7 @@ bool is_unit(const SourceSection& source)
     return source.unit_kind == unit_kind;
 }
 
-template <Kind kind>
+template <SourceKind kind>
 bool is(const SourceSection& source)
 {
     return source.kind == kind;
@@ -202,16 +202,16 @@ const Table<SourceSection>& source_table()
 {
     static const Table<SourceSection> table{
         "Where the frames come from.",
-        {word<SourceSection, Kind>({.name = "kind", .sentence = "A simulation, a recording, or IMUs of a robot."}, "source",
+        {word<SourceSection, SourceKind>({.name = "kind", .sentence = "A simulation, a recording, or IMUs of a robot."}, "source",
                                    &SourceSection::kind,
-                                   {{"simulation", Kind::simulation}, {"log", Kind::log}, {"ros2_imu", Kind::ros2_imu}}),
+                                   {{"simulation", SourceKind::simulation}, {"log", SourceKind::log}, {"ros2_imu", SourceKind::ros2_imu}}),
          faults_row()},
         {{"unit.kind: vessel_rates",
           "A simulated vessel. `plant` or `vessel` state what really sails where it is not what the detectors believe.",
           is_unit<SensorKind::vessel_rates>, vessel_table().rows()},
-         {"kind: simulation", "A simulated instrument on a moving body.", is<Kind::simulation>, simulation_table().rows()},
-         {"kind: log", "A log that is played as if the sensors were here.", is<Kind::log>, log_table().rows()},
-         {"kind: ros2_imu", "Several IMUs of a robot (sensor_msgs/Imu) as one cluster; their mountings are the axes.", is<Kind::ros2_imu>,
+         {"kind: simulation", "A simulated instrument on a moving body.", is<SourceKind::simulation>, simulation_table().rows()},
+         {"kind: log", "A log that is played as if the sensors were here.", is<SourceKind::log>, log_table().rows()},
+         {"kind: ros2_imu", "Several IMUs of a robot (sensor_msgs/Imu) as one cluster; their mountings are the axes.", is<SourceKind::ros2_imu>,
           ros2_source_rows()}}};
     return table;
 }

@@ -5,6 +5,8 @@
 
 namespace quorient {
 
+inline constexpr std::int64_t second_ns = 1'000'000'000;
+
 /// The nearest whole nanosecond. |seconds| below 9.2e9.
 inline std::int64_t nanoseconds(double seconds)
 {
