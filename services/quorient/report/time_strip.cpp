@@ -144,7 +144,7 @@ const std::string_view figure_style =
 
 Strip band_strip(const std::string& title, const std::string& unit, const TimeSpan& span, const std::vector<Band>& bands, const BandLook& look)
 {
-    const Strip keys = legend(bands, span);
+    const Strip keys = strip_legend(bands, span);
     const double from = keys.height;
     const Scale scale = scale_of(bands, look);
     return {title, unit, span.left, from + look.height + bottom_margin,

@@ -5,8 +5,6 @@
 #include "quorient/system/plant.hpp"
 
 namespace quorient::cli {
-
-using namespace configuration;
 namespace {
 
 constexpr double default_threshold = 1e-3;  // docs/methods/observers.md
@@ -36,17 +34,19 @@ struct VesselFile {
     fdi::ObserverSettings observers;
 };
 
-const Table<VesselFile>& vessel_file_table()
+const configuration::Table<VesselFile>& vessel_file_table()
 {
+    using configuration::all_of;
+    using configuration::value;
     using fdi::ObserverSettings;
-    const auto figures = record<ObserverSettings>(fdi::observer_record());
-    static const Table<VesselFile> table{
+    const auto figures = configuration::record<ObserverSettings>(fdi::observer_record());
+    static const configuration::Table<VesselFile> table{
         "A vessel, or another plant, and its observers.",
         {all_of(&VesselFile::plant, system::plant_rows()),
          all_of(&VesselFile::input, system::poles({.name = "directional_poles"}, &VesselInput::directional_poles)),
          all_of(&VesselFile::input, system::poles({.name = "blind_poles"}, &VesselInput::blind_poles)),
          all_of(&VesselFile::observers, value({.name = "sigma", .bounds = fdi::sigma_bounds}, &ObserverSettings::sigma)),
-         all_of(&VesselFile::observers, chosen(figures, {"model_error", "threshold"})),
+         all_of(&VesselFile::observers, configuration::chosen(figures, {"model_error", "threshold"})),
          all_of(&VesselFile::observers,
                 value({.name = "false_alarm_probability", .bounds = settings::probability}, &ObserverSettings::false_alarm_probability))}};
     return table;
@@ -58,14 +58,14 @@ tl::expected<VesselInput, std::string> load_vessel(const std::string& file)
 {
     VesselFile read;
     if (!file.empty()) {
-        const auto document = load_yaml(file);
+        const auto document = configuration::load_yaml(file);
         if (!document) return tl::unexpected(document.error().text());
-        Problems problems(file);
-        Section root(*document, "", problems);
+        configuration::Problems problems(file);
+        configuration::Section root(*document, "", problems);
         vessel_file_table().read(root, read);
         const auto model = system::model_of(read.plant);
         if (model) read.input.model = *model;
-        else if (!model.error().what.empty()) report(problems, *document, model.error().key, model.error().what);
+        else if (!model.error().what.empty()) configuration::report(problems, *document, model.error().key, model.error().what);
         if (!problems.empty()) return tl::unexpected(problems.text());
     } else {
         read.input.model = simulation::nomoto({}).value();

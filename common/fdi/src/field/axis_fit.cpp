@@ -1,5 +1,7 @@
 #include "field/axis_fit.hpp"
 
+#include "field/frame_rules.hpp"
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -11,8 +13,6 @@ namespace {
 constexpr double prior_bias = 10;
 constexpr double prior_error = 1;
 constexpr double prior_delay = 0.1;
-
-constexpr double colour = 10;
 
 /// The prior's weight depends on the noise, which depends on the estimate.
 constexpr int rounds = 2;

@@ -18,7 +18,7 @@ namespace quorient::fdi {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double negligible = 1e-9;  // of a weight among weights of norm one
+constexpr double negligible_weight = 1e-9;  // of a weight among weights of norm one
 
 Eigen::Index at(std::size_t axis)
 {
@@ -158,7 +158,7 @@ void GuaranteedDetector::add_circuit(AxisMask rows)
     for (std::size_t k = 0; k < members.count; ++k) {
         const double weight = space.basis()(0, members.item[k]);
         circuit.row[k] = members.item[k];
-        if (std::abs(weight) < negligible) continue;
+        if (std::abs(weight) < negligible_weight) continue;
         circuit.weight(at(k)) = weight;
         limit += bound_(members.item[k]) * std::abs(weight);
         support |= axis_bit(members.item[k]);

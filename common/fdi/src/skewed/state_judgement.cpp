@@ -138,7 +138,7 @@ std::optional<std::size_t> SkewedDetector::State::outside_class(Eigen::Index par
         const double largest = parameter == skewed::bias ? largest_bias : figures_.largest_gain_error;
         const auto [along, others] = parity.split(i, residual);
         const double rho = field::Windows::scatter_factor(parity.redundancy() - 1) * std::sqrt(parity.share(i, i));
-        const double times = std::abs(along) / (std::sqrt(of_three) * largest + rho * others);
+        const double times = std::abs(along) / (std::sqrt(skewed::of_three) * largest + rho * others);
         second = std::max(second, std::min(times, most));
         if (times <= most) continue;
         most = times;

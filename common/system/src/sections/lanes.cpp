@@ -28,7 +28,7 @@ const Table<IntegratorSection>& integrator_table()
     return table;
 }
 
-bool gives_attitude(const LaneSection& lane)
+bool is_integrated(const LaneSection& lane)
 {
     return unit_kind(lane.unit_kind).gives_attitude;
 }
@@ -44,9 +44,9 @@ const Table<LaneSection>& lane_table()
          part<LaneSection, DetectorSection>(
              {.name = "detector", .sentence = "How it finds faults."}, &LaneSection::detector, detector_table(),
              [](const LaneSection& lane, DetectorSection& detector) { detector.unit_kind = lane.unit_kind; })},
-        {{"unit.kind: gyro", "", gives_attitude,
+        {{"unit.kind: gyro", "", is_integrated,
           part({.name = "integrator", .sentence = "How it integrates."}, &LaneSection::integrator, integrator_table())},
-         {"another unit.kind", "No integrator.", [](const LaneSection& lane) { return !gives_attitude(lane); },
+         {"another unit.kind", "No integrator.", [](const LaneSection& lane) { return !is_integrated(lane); },
           refused<LaneSection>({"integrator"}, [](const LaneSection& lane) {
               return fmt::format("{} give no attitude: there is nothing to integrate", unit_kind(lane.unit_kind).subject);
           })}}};
