@@ -4,6 +4,7 @@
 #include "quorient/design/mission.hpp"
 #include "quorient/geometry/figures.hpp"
 #include "quorient/geometry/layouts.hpp"
+#include "quorient/messages/units.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -21,7 +22,6 @@ using design::Brief;
 using design::Design;
 using design::Objective;
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 Brief brief_of(std::size_t instruments, unsigned axes_each, design::Mounting mounting = design::FreeMounting{})

@@ -2,19 +2,18 @@
 #include "detection_report.hpp"
 #include "arrays/accumulating_detector.hpp"
 #include "quorient/messages/meaning.hpp"
+#include "quorient/messages/units.hpp"
 #include "study.hpp"
 #include "cli/program.hpp"
 
 #include <fmt/format.h>
 #include <cstdlib>
 #include <filesystem>
-#include <numbers>
 
 namespace quorient::studies {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double rest_sizes_deg_s[] = {0.5, 1, 2, 22.9, 60};
 constexpr double motion_sizes_deg_s[] = {2, 5, 10, 22.9, 60};
 

@@ -1,15 +1,14 @@
 #include "detection_report.hpp"
 
+#include "quorient/messages/units.hpp"
+
 #include <fmt/format.h>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 
 namespace quorient::studies {
 
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 std::string seconds(double value)
 {

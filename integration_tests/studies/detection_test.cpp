@@ -1,5 +1,6 @@
 #include "detection_cells.hpp"
 #include "quorient/diagnosis/px4_rule.hpp"
+#include "quorient/messages/units.hpp"
 #include "study.hpp"
 #include "quorient/geometry/layouts.hpp"
 
@@ -8,7 +9,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <numbers>
 #include <random>
 
 namespace quorient::studies {
@@ -16,7 +16,6 @@ namespace quorient::studies {
 using diagnosis::Px4Rule;
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double interval_s = 0.016;
 
 std::filesystem::path data_dir()

@@ -1,16 +1,16 @@
 #include "field_fault.hpp"
 
+#include "quorient/messages/units.hpp"
+
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 namespace quorient::studies {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double least_noise = 0.06 * degree;
 constexpr double full_scale = 2000 * degree;
 constexpr std::size_t samples_per_spike = 200;

@@ -1,14 +1,13 @@
 #include "field_peers.hpp"
 
 #include "quorient/diagnosis/ardupilot_rule.hpp"
+#include "quorient/messages/units.hpp"
 
 #include <algorithm>
-#include <numbers>
 
 namespace quorient::studies {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double first_s = 1;
 constexpr double rest_deviation = 0.5 * degree;
 constexpr double moving_rate = 10 * degree;

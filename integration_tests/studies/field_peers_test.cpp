@@ -4,15 +4,14 @@
 #include "field_trial.hpp"
 
 #include "quorient/messages/meaning.hpp"
+#include "quorient/messages/units.hpp"
 
 #include <gtest/gtest.h>
 #include <cmath>
-#include <numbers>
 
 namespace quorient::studies {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double interval_s = 0.01;
 constexpr double rest_s = 6;
 

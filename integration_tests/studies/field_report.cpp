@@ -1,6 +1,7 @@
 #include "field_report.hpp"
 
 #include "quorient/messages/diagnosis_text.hpp"
+#include "quorient/messages/units.hpp"
 #include "quorient/messages/words.hpp"
 
 #include <fmt/format.h>
@@ -8,12 +9,9 @@
 #include <bit>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 
 namespace quorient::studies {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 std::string seconds(double value)
 {

@@ -2,14 +2,13 @@
 
 #include "field_trial.hpp"
 
+#include "quorient/messages/units.hpp"
+
 #include <gtest/gtest.h>
 #include <cstdlib>
-#include <numbers>
 
 namespace quorient::studies {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 std::filesystem::path data_dir()
 {

@@ -1,18 +1,17 @@
 #include "detection_cells.hpp"
 #include "motion_terms_fit.hpp"
 #include "cli/parallel.hpp"
+#include "quorient/messages/units.hpp"
 #include "study.hpp"
 #include "cli/program.hpp"
 
 #include <fmt/format.h>
 #include <cmath>
-#include <numbers>
 
 namespace quorient::studies {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double sizes_deg_s[] = {5, 10, 22.9};
 
 constexpr double fitted_factors[] = {1, 1.2};

@@ -1,6 +1,7 @@
 #include "motion_terms_fit.hpp"
 #include "quorient/geometry/layouts.hpp"
 #include "quorient/calibration/gated_terms.hpp"
+#include "quorient/messages/units.hpp"
 
 #include <gtest/gtest.h>
 #include <algorithm>
@@ -12,7 +13,6 @@
 namespace quorient::studies {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double interval_s = 0.016;
 constexpr double jitter_s = 0.3e-3;
 
