@@ -11,7 +11,7 @@ namespace {
 
 using geometry::AxisMatrix;
 
-constexpr double least_motion_to_disagreement = 5.0;  // of the weakest motion to the strongest disagreement, both as rms rates
+constexpr double least_motion_to_disagreement = 5.0;  // the weakest motion to the strongest disagreement, both as rms rates
 constexpr double nominal_enough = 0.175;  // [rad] 10 deg: no assembly error is larger, no deliberate mounting smaller
 
 /// Which rows of H belong to each instrument.

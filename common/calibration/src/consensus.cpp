@@ -17,7 +17,7 @@ constexpr double huber_sigmas = 1.5;      // a residual beyond them pulls no har
 constexpr int reweightings = 8;
 constexpr double sigma_of_median = 1.4826;  // makes a standard deviation of normal residuals' median magnitude
 constexpr double colour = 4;              // so many averaged samples are one independent piece of information
-constexpr double least_motion_to_residual = 5;  // of the weakest motion: less shows no gains
+constexpr double least_motion_to_residual = 5;  // the weakest motion: less shows no gains
 constexpr double least_gain = 0.1;        // below it an axis has no direction
 constexpr std::size_t fewest_samples = 20;
 

@@ -17,7 +17,7 @@ namespace {
 using Eigen::Index;
 using Eigen::Matrix3d;
 
-constexpr double vanishing = 1e-9;    // of det A and of an axis's own W_ii: less is taken for zero
+constexpr double vanishing = 1e-9;    // a det A, or an axis's own W_ii, below it is taken for zero
 constexpr double close = 1e-9;        // relative: a demand that is missed by less is met
 constexpr double impossible = 1e6;
 constexpr std::size_t choices_of_task = 2000;

@@ -1,6 +1,6 @@
 #include "skewed/axis_frames.hpp"
 
-#include "verdict/near_range.hpp"
+#include "near_range.hpp"
 
 #include <cmath>
 

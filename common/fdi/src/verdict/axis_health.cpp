@@ -1,6 +1,6 @@
 #include "verdict/axis_health.hpp"
 
-#include "verdict/near_range.hpp"
+#include "near_range.hpp"
 
 #include <algorithm>
 #include <bit>
