@@ -1,7 +1,7 @@
 #include "quorient/fdi/instrument_array.hpp"
 
-#include "quorient/geometry/redundancy.hpp"
 #include "near_range.hpp"
+#include "quorient/geometry/redundancy.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
