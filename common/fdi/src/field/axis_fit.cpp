@@ -71,7 +71,7 @@ void AxisFit::solve()
         const double left = squares_ - 2 * estimate_.dot(moment_) + estimate_.dot(normal_ * estimate_);
         variance_ = std::max(least, left / static_cast<double>(frames_ - static_cast<std::size_t>(parameter_count)));
     }
-    covariance_ = colour * variance_ * inverse;
+    covariance_ = usual_colour * variance_ * inverse;
 
     const Eigen::Vector3d error = estimate_.segment<3>(gain_x);
     const Eigen::Matrix3d error_covariance = covariance_.block<3, 3>(gain_x, gain_x);

@@ -193,9 +193,9 @@ void Comparison::learn(std::size_t component, const Deviation& deviation, const 
 {
     const double variance = noise_.typical(component);
     if (slow_)
-        learning_.learn(component, slow_->regressors(component), present, slow, variance, std::max(colour, slow_->colour()), interval_s_);
+        learning_.learn(component, slow_->regressors(component), present, slow, variance, std::max(usual_colour, slow_->colour()), interval_s_);
     else
-        learning_.learn(component, deviation.regressors, present, deviation.raw, variance, colour, interval_s_);
+        learning_.learn(component, deviation.regressors, present, deviation.raw, variance, usual_colour, interval_s_);
 }
 
 void Comparison::add(const Motion& motion, const Input& input)

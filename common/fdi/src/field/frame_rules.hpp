@@ -5,7 +5,7 @@
 namespace quorient::fdi::field {
 
 /// Residuals are coloured: so many frames are one independent piece of information.
-inline constexpr double colour = 10;
+inline constexpr double usual_colour = 10;
 
 /// A frame in which a sensor deviates by more is off.
 inline constexpr double off_sigmas = 6;
