@@ -8,7 +8,7 @@ namespace {
 
 constexpr double longest_history_frames = 250'000;
 
-constexpr std::array<settings::Setting<IntegratorSettings>, 5> record{{
+constexpr std::array<settings::Setting<IntegratorSettings>, 5> integrator_keys{{
     {"history_s", &IntegratorSettings::history_s, "s", settings::above_zero,
      "A verdict whose onset lies back no further than this is honoured: the frames since are integrated again."},
     {"rollback", &IntegratorSettings::rollback, "", {}, "With false, a verdict acts from the next frame on. For comparison only."},
@@ -23,7 +23,7 @@ constexpr std::array<settings::Setting<IntegratorSettings>, 5> record{{
 
 settings::Record<IntegratorSettings> integrator_record()
 {
-    return record;
+    return integrator_keys;
 }
 
 double longest_history_s(double interval_s)

@@ -181,7 +181,7 @@ void AxisComparison::add_to_sums(const Regressors& regressors, double weight, co
 
 void AxisComparison::learn(const Regressors& regressors, const AxisParity& parity)
 {
-    const auto [gain, limit] = allowance_.learn(regressors, noise_.typical(), field::colour);
+    const auto [gain, limit] = allowance_.learn(regressors, noise_.typical(), field::usual_colour);
     const double length = norm(residual_);
     const double longest = limit * std::sqrt(static_cast<double>(parity.redundancy()));
     const double scale = length > longest ? longest / length : 1;
