@@ -88,7 +88,7 @@ private:
         low_level_transport_->OpenOutputChannel(not_needed, locator);
     }
 
-    /// Of the two ports of each kind, multicast and unicast, those for discovery are even [RTPS 2.3, 9.6.1.1].
+    /// Ports for discovery are even, multicast and unicast; those for samples are odd [RTPS 2.3, 9.6.1.1].
     static bool is_discovery(const Locator_t& local) { return local.port % 2 == 0; }
 
     GuardedDescriptor descriptor_;
