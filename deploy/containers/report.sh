@@ -8,9 +8,7 @@ write_report() {
         echo "Made by \`deploy/containers/run --report integration_tests/results/containers.md\`, $(uname -m), $(nproc) processors, $(date -u +%Y-%m-%d)."
         echo
         echo '```'
-        sed '/up$/q' "$logs/steps.log"
-        cat "$logs/scenario.log"
-        sed '1,/up$/d' "$logs/steps.log"
+        cat "$logs/steps.log"
         echo "$passed passed, $failed failed"
         echo '```'
         echo

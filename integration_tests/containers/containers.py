@@ -1,4 +1,4 @@
-"""The containers of deploy/docker-compose.yml from outside: their state, their fences, and what breaks them."""
+"""The containers of a compose file from outside: their state, their fences, and what breaks them."""
 import json
 import os
 import pathlib
@@ -12,7 +12,6 @@ from integration_tests.containers.scheduling import Scheduling
 COMPOSE_FILE = pathlib.Path(__file__).resolve().parents[2] / "deploy/docker-compose.yml"
 SYSTEM_FILE = COMPOSE_FILE.parent / "configurations/compose.yaml"
 SERVICES = ["sensor", *(f"{role}-{lane}" for lane in "abc" for role in ("fdi", "attitude")), "voter-1", "voter-2"]
-EVERYTHING = [*SERVICES, "roudi", "observer"]
 UID = 10001
 
 
@@ -23,17 +22,23 @@ def run(*command, check=True, timeout=120):
     return result
 
 
+def peers_of(system_file):
+    """Options of a verb that joins from another container."""
+    return [word for peer in re.findall(r"^  - ([0-9.]+)", system_file.read_text(), re.MULTILINE) for word in ("--peer", peer)]
+
+
 class Containers:
-    def __init__(self, project):
+    """Of one compose file: a container for each process of the system, and others."""
+
+    def __init__(self, project, compose_file, others=()):
         self.project = project
-        self.ids = {name: self.compose("ps", "-q", name).stdout.strip() for name in EVERYTHING}
-        networks = json.loads(run("docker", "network", "inspect", f"{project}_network_a").stdout)
+        self._compose_file = compose_file
+        self.ids = {name: self.compose("ps", "-q", name).stdout.strip() for name in (*SERVICES, *others)}
         self._scheduling = Scheduling(self.ids.values())
         self.prefer = self._scheduling.prefer
-        self._bridge_a = "br-" + networks[0]["Id"][:12]
 
     def compose(self, *words):
-        return run("docker-compose", "-p", self.project, "-f", COMPOSE_FILE, *words)
+        return run("docker-compose", "-p", self.project, "-f", self._compose_file, *words)
 
     def inspect(self, template):
         """{service: what the template makes of its container}, by one call for all."""
@@ -42,9 +47,9 @@ class Containers:
         return dict(zip(names, lines))
 
     def not_healthy(self):
-        """Services whose health check, the heartbeat of fresh frames, does not say healthy."""
+        """Services whose health check, the heartbeat of fresh frames, does not say healthy, and others that have one."""
         states = self.inspect("{{if .State.Health}}{{.State.Health.Status}}{{end}}")
-        return [name for name in (*SERVICES, "roudi") if states[name] != "healthy"]
+        return [name for name, state in states.items() if state != "healthy" and (state or name in SERVICES)]
 
     def processes(self):
         """{service: id of its container's first process}"""
@@ -69,20 +74,8 @@ class Containers:
             }.items() if wrong]
         return found
 
-    def reaches(self, name, address):
-        """Whether the address answers this container: a closed port refuses at once, a network without a route is silent."""
-        probe = ("import socket, sys\ns = socket.socket()\ns.settimeout(1.5)\n"
-                 "sys.exit(0 if s.connect_ex((sys.argv[1], 9)) in (0, 111) else 1)")
-        return run("nsenter", "--net", "--target", self.processes()[name], sys.executable, "-c", probe, address, check=False).returncode == 0
-
     def _limits(self, name):
         return json.loads(run("docker", "inspect", "-f", "{{json .HostConfig}}", self.ids[name]).stdout)
-
-    def inject(self, fault):
-        """The truth topic shows whether the request arrived."""
-        peers = re.findall(r"^  - ([0-9.]+)", SYSTEM_FILE.read_text(), re.MULTILINE)
-        run("docker", "exec", self.ids["observer"], "quorient", "inject", fault, "--dds", "fastdds", "--interface", "any", "--domain", "42",
-            "--participants-per-host", "3", *(word for peer in peers for word in ("--peer", peer)), check=False)
 
     def kill(self, *names):
         """Kills by process id, like a crash: Docker's restart policy then restarts the container, which it does not after `docker kill`."""
@@ -99,12 +92,6 @@ class Containers:
     def go_on(self, name):
         run("docker", "unpause", self.ids[name])
 
-    def cut_network_a(self):
-        run("ip", "link", "set", self._bridge_a, "down")
-
-    def heal_network_a(self):
-        run("ip", "link", "set", self._bridge_a, "up")
-
     def stop(self):
         """@returns {service: exit code} of those that did not end in order."""
         self.compose("stop", *SERVICES)
@@ -114,3 +101,29 @@ class Containers:
         for name, container in self.ids.items():
             with open(folder / f"{name}.log", "wb") as log:
                 subprocess.run(["docker", "logs", container], stdout=log, stderr=subprocess.STDOUT, timeout=120)
+
+
+class TwoNetworks(Containers):
+    """Of deploy/docker-compose.yml."""
+
+    def __init__(self, project):
+        super().__init__(project, COMPOSE_FILE, ("roudi", "observer"))
+        networks = json.loads(run("docker", "network", "inspect", f"{project}_network_a").stdout)
+        self._bridge_a = "br-" + networks[0]["Id"][:12]
+
+    def reaches(self, name, address):
+        """Whether the address answers this container: a closed port refuses at once, a network without a route is silent."""
+        probe = ("import socket, sys\ns = socket.socket()\ns.settimeout(1.5)\n"
+                 "sys.exit(0 if s.connect_ex((sys.argv[1], 9)) in (0, 111) else 1)")
+        return run("nsenter", "--net", "--target", self.processes()[name], sys.executable, "-c", probe, address, check=False).returncode == 0
+
+    def inject(self, fault):
+        """The truth topic shows whether the request arrived."""
+        run("docker", "exec", self.ids["observer"], "quorient", "inject", fault, "--dds", "fastdds", "--interface", "any", "--domain", "42",
+            "--participants-per-host", "3", *peers_of(SYSTEM_FILE), check=False)
+
+    def cut_network_a(self):
+        run("ip", "link", "set", self._bridge_a, "down")
+
+    def heal_network_a(self):
+        run("ip", "link", "set", self._bridge_a, "up")

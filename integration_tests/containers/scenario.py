@@ -12,7 +12,7 @@ import time
 from dataclasses import dataclass, field
 from typing import Callable
 
-from integration_tests.containers.containers import Containers
+from integration_tests.containers.containers import TwoNetworks
 from integration_tests.containers.observed import Observed
 from integration_tests.harness.judge import FINAL_ERROR_RAD, disordered, errors, largest_gap, missing_frames
 from integration_tests.harness.pipeline import ALL_LANES, NotInTime
@@ -165,6 +165,11 @@ def tell(observed, chapter, verdicts):
     verdicts.check(f"{chapter.name}: the attitude stays within {FINAL_ERROR_RAD:.0e} rad of the truth", worst <= FINAL_ERROR_RAD, f"{worst:.1e} rad")
 
 
+def judge_fences(containers, verdicts):
+    found = containers.not_fenced()
+    verdicts.check("no process has a capability, a writable root, more privileges to gain, or no limits", not found, found or "")
+
+
 def start_up(containers, observed, verdicts):
     """What must hold before anything is broken."""
     containers.prefer()
@@ -172,8 +177,7 @@ def start_up(containers, observed, verdicts):
     until_whole(containers, observed, "both voters stand on three lanes", 60)
     until(lambda: not containers.not_healthy(), f"healthy: {containers.not_healthy()}", 60)
     verdicts.check("every container is healthy, both voters stand on three lanes", True)
-    found = containers.not_fenced()
-    verdicts.check("no process has a capability, a writable root, more privileges to gain, or no limits", not found, found or "")
+    judge_fences(containers, verdicts)
     ways = [containers.reaches("roudi", address) for address in (VOTER_1_ON_A, FDI_C_ON_B)]
     verdicts.check("from network A one reaches network A and not B", ways == [True, False], ways)
     shared = {name: status.transport for name, status in observed.statuses.items() if name.endswith("-a")}
@@ -220,18 +224,14 @@ def judge_whole_run(observed, verdicts, onset):
     after = {sample.isolated for sample in observed.merged if sample.identity > (onset[0], onset[1] + FRAMES_TO_ISOLATION)}
     verdicts.check("nothing is isolated before the fault", before == {0}, sorted(before))
     verdicts.check("behind it that axis and no other, through every restart", after == {right}, sorted(after))
-    end = observed.newest()
-    turned = disordered(observed.merged, end, lambda sample: sample.voter), disordered(observed.plain, end, lambda sample: 0)
-    verdicts.check("no voter and no plain reader ever sees an output go back", turned == (0, 0), turned)
+    judge_order(observed, verdicts)
     verdicts.check("every line of the observer is whole", observed.unreadable == 0, observed.unreadable or "")
 
 
-def scenario(containers, observed, verdicts):
-    """@returns [(title, first frame, last frame)] of each fault, for the report"""
-    start_up(containers, observed, verdicts)
-    onset = sensor_fault(containers, observed, verdicts)
-    told = [(f"axis {FAULTY_AXIS} begins to lie", onset, observed.newest())]
-    for chapter in chapters():
+def play_all(containers, observed, chapters, verdicts):
+    """@returns [(title, first frame, last frame)] of each chapter"""
+    told = []
+    for chapter in chapters:
         for attempt in range(3):
             until_whole(containers, observed, f"three lanes behind both voters before: {chapter.name}", RETURN_S)
             stall_s = play(containers, observed, chapter)
@@ -240,11 +240,37 @@ def scenario(containers, observed, verdicts):
             verdicts.say(f"again: {chapter.name}: {'; '.join(chapter.broken)}; this machine stood still for {1e3 * stall_s:.0f} ms")
         tell(observed, chapter, verdicts)
         told.append((chapter.name, chapter.since, chapter.end))
-    judge_whole_run(observed, verdicts, onset)
+    return told
+
+
+def stop(containers, verdicts):
     begin_s = time.monotonic()
     codes = containers.stop()
     verdicts.check("every service ends in order when asked to stop", not codes, codes or f"{time.monotonic() - begin_s:.1f} s")
+
+
+def judge_order(observed, verdicts):
+    end = observed.newest()
+    turned = disordered(observed.merged, end, lambda sample: sample.voter), disordered(observed.plain, end, lambda sample: 0)
+    verdicts.check("no voter and no plain reader ever sees an output go back", turned == (0, 0), turned)
+
+
+def scenario(containers, observed, verdicts):
+    """@returns [(title, first frame, last frame)] of each fault, for the report"""
+    start_up(containers, observed, verdicts)
+    onset = sensor_fault(containers, observed, verdicts)
+    told = [(f"axis {FAULTY_AXIS} begins to lie", onset, observed.newest()), *play_all(containers, observed, chapters(), verdicts)]
+    judge_whole_run(observed, verdicts, onset)
+    stop(containers, verdicts)
     return told
+
+
+def conclude(containers, verdicts, logs):
+    """@returns the exit code"""
+    if verdicts.failed:
+        containers.save_logs(logs)
+    print(f"{verdicts.passed} passed, {verdicts.failed} failed")
+    return 1 if verdicts.failed or not verdicts.passed else 0
 
 
 def main():
@@ -252,7 +278,7 @@ def main():
     parser.add_argument("logs", type=pathlib.Path, help="folder for the logs of a failure")
     parser.add_argument("--trace", type=pathlib.Path, help="write here what the observer received around each fault")
     options = parser.parse_args()
-    containers, verdicts, told = Containers(os.environ["COMPOSE_PROJECT_NAME"]), Verdicts(), []
+    containers, verdicts, told = TwoNetworks(os.environ["COMPOSE_PROJECT_NAME"]), Verdicts(), []
     with Observed(containers.ids["observer"]) as observed:
         try:
             told = scenario(containers, observed, verdicts)
@@ -260,10 +286,7 @@ def main():
             verdicts.check("the scenario runs to its end", False, problem)
         if options.trace:
             options.trace.write_text("\n".join(table(observed, *fault) for fault in told))
-    if verdicts.failed:
-        containers.save_logs(options.logs)
-    print(f"{verdicts.passed} passed, {verdicts.failed} failed")
-    return 1 if verdicts.failed or not verdicts.passed else 0
+    return conclude(containers, verdicts, options.logs)
 
 
 if __name__ == "__main__":

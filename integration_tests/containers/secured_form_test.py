@@ -1,13 +1,16 @@
 """The compose file of the secured system: each container sees its own keys alone, as read-only files, and nothing of the authority."""
 import copy
+import io
 import os
 import pathlib
 import re
 import shutil
 import subprocess
+import tarfile
 import tempfile
 import unittest
 
+from integration_tests.containers import private_keys
 from integration_tests.harness.processes import BIN, CONFIGURATIONS, ROOT
 
 try:
@@ -109,6 +112,31 @@ class SecuredForm(unittest.TestCase):
         done = config(environment)
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("QUORIENT_KEYS", done.stderr + done.stdout)
+
+
+class PrivateKeys(unittest.TestCase):
+    KEY = b"-----BEGIN PRIVATE KEY-----\n" + b"MIGHAgEAMBMGByqGSM49" * 3
+
+    @staticmethod
+    def archive(files):
+        stream = io.BytesIO()
+        with tarfile.open(fileobj=stream, mode="w") as archive:
+            for name, content in files.items():
+                member = tarfile.TarInfo(name)
+                member.size = len(content)
+                archive.addfile(member, io.BytesIO(content))
+        return stream.getvalue()
+
+    def found(self, **files):
+        layer = self.archive({"usr/": b"", **files})
+        return list(private_keys.private_keys_in(io.BytesIO(self.archive({"manifest.json": b"[]", "1/layer.tar": layer, **files}))))
+
+    def test_are_found_in_layers_and_in_settings(self):
+        self.assertEqual(self.found(key=self.KEY, other=bytes(5000)), ["key", "key"])
+        self.assertEqual(self.found(settings=b'{"Env": "KEY=' + self.KEY.replace(b"\n", b"\\n").replace(b"PRIVATE", b"EC PRIVATE")), ["settings"] * 2)
+
+    def test_are_not_certificates_nor_what_a_library_tests_itself_with(self):
+        self.assertEqual(self.found(certificate=self.KEY.replace(b"PRIVATE KEY", b"CERTIFICATE"), library=b"\x7fELF" + self.KEY), [])
 
 
 if __name__ == "__main__":
