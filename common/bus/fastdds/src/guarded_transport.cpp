@@ -1,10 +1,12 @@
 #include "guarded_transport.hpp"
 
 #include "foreign_acknacks.hpp"
+#include "handshake.hpp"
 #include "rtps_guard.hpp"
 
 #include <mutex>
 #include <set>
+#include <thread>
 
 namespace quorient::bus::fastdds {
 
@@ -73,7 +75,10 @@ public:
         if (!is_sound_rtps(buffer, size)) return;
         const auto understood = with_understood_acknacks(buffer, size);
         std::unique_lock one_at_a_time{discovery_, std::defer_lock};
-        if (is_discovery(local)) one_at_a_time.lock();
+        if (is_discovery(local)) {
+            one_at_a_time.lock();
+            if (is_handshake(buffer, size)) std::this_thread::sleep_for(handshake_delay);
+        }
         above->OnDataReceived(understood ? understood->data() : buffer, size, local, remote);
     }
 

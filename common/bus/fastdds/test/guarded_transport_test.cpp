@@ -1,4 +1,5 @@
 #include "../src/guarded_transport.hpp"
+#include "../src/handshake.hpp"
 
 #include <gtest/gtest.h>
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <vector>
 
 namespace quorient::bus::fastdds {
 
@@ -34,11 +36,31 @@ private:
     int held_ = 0;
 };
 
+std::unique_ptr<rtps::TransportInterface> guarded_transport()
+{
+    const auto descriptor = guarded(std::make_shared<rtps::UDPv4TransportDescriptor>(), std::make_shared<std::atomic<bool>>(true));
+    return std::unique_ptr<rtps::TransportInterface>{descriptor->create_transport()};
+}
+
+/// An INFO_DST, and a sample or fragment of this writer.
+std::vector<wire::octet> datagram_of(wire::octet id, std::array<wire::octet, 4> writer)
+{
+    std::vector<wire::octet> datagram{'R', 'T', 'P', 'S', 2, 3, 1, 15};
+    datagram.resize(20);
+    datagram.insert(datagram.end(), {0x0e, 1, 12, 0, 1, 15, 1, 15, 1, 15, 1, 15, 1, 15, 1, 15});
+    datagram.insert(datagram.end(), {id, 1, 20, 0, 0, 0, 16, 0, 0, 0, 0, 0});
+    datagram.insert(datagram.end(), writer.begin(), writer.end());
+    datagram.insert(datagram.end(), {0, 0, 0, 0, 1, 0, 0, 0});
+    return datagram;
+}
+
+constexpr std::array<wire::octet, 4> of_handshakes{0x00, 0x02, 0x01, 0xc3};
+constexpr std::array<wire::octet, 4> of_announcements{0x00, 0x01, 0x00, 0xc2};
+
 /// @returns how many datagrams are with the library at once when one arrives by each port.
 int at_once(std::array<std::uint32_t, 2> ports)
 {
-    const auto descriptor = guarded(std::make_shared<rtps::UDPv4TransportDescriptor>(), std::make_shared<std::atomic<bool>>(true));
-    const std::unique_ptr<rtps::TransportInterface> transport{descriptor->create_transport()};
+    const auto transport = guarded_transport();
     auto& guard = dynamic_cast<rtps::ChainingTransport&>(*transport);
     std::array<wire::octet, 20> datagram{'R', 'T', 'P', 'S', 2, 3, 1, 15};
     Receiver receiver;
@@ -62,6 +84,35 @@ TEST(GuardedTransport, does_not_make_samples_wait_for_discovery_nor_for_each_oth
 {
     EXPECT_EQ(at_once({17900, 17911}), 2);
     EXPECT_EQ(at_once({17901, 17911}), 2);
+}
+
+TEST(GuardedTransport, lets_a_message_of_the_handshake_wait)
+{
+    const auto transport = guarded_transport();
+    const auto datagram = datagram_of(0x15, of_handshakes);
+    class : public rtps::TransportReceiverInterface {
+    public:
+        void OnDataReceived(const wire::octet*, std::uint32_t, const wire::Locator_t&, const wire::Locator_t&) override { received = true; }
+        bool received = false;
+    } receiver;
+    wire::Locator_t local;
+    local.port = 17910;
+    const auto begin = std::chrono::steady_clock::now();
+    dynamic_cast<rtps::ChainingTransport&>(*transport).receive(&receiver, datagram.data(), static_cast<std::uint32_t>(datagram.size()), local, {});
+    EXPECT_GE(std::chrono::steady_clock::now() - begin, handshake_delay);
+    EXPECT_TRUE(receiver.received);
+}
+
+TEST(Handshake, is_recognised_whole_and_in_fragments_and_nothing_else_is)
+{
+    const auto is = [](const std::vector<wire::octet>& datagram) { return is_handshake(datagram.data(), datagram.size()); };
+    EXPECT_TRUE(is(datagram_of(0x15, of_handshakes)));
+    EXPECT_TRUE(is(datagram_of(0x16, of_handshakes)));
+    EXPECT_FALSE(is(datagram_of(0x07, of_handshakes)));
+    EXPECT_FALSE(is(datagram_of(0x15, of_announcements)));
+    auto cut = datagram_of(0x15, of_handshakes);
+    cut.resize(cut.size() - 10);
+    EXPECT_FALSE(is(cut));
 }
 
 }  // namespace
