@@ -61,6 +61,7 @@ public:
               const std::chrono::steady_clock::time_point& timeout) override
     {
         if (!descriptor_.listening->load(std::memory_order_relaxed)) return true;
+        if (const auto begins = beginning(datagram, size); is_handshake(begins.data(), begins.size())) pause_.sent();
         const auto announce = [this](const Locator_t& locator) { know(locator); };
         Announcing first{*begin, announce};
         Announcing last{*end, announce};
@@ -77,7 +78,7 @@ public:
         std::unique_lock one_at_a_time{discovery_, std::defer_lock};
         if (is_discovery(local)) {
             one_at_a_time.lock();
-            if (is_handshake(buffer, size)) std::this_thread::sleep_for(handshake_delay);
+            if (is_handshake(buffer, size)) std::this_thread::sleep_for(pause_.left());
         }
         above->OnDataReceived(understood ? understood->data() : buffer, size, local, remote);
     }
@@ -98,6 +99,7 @@ private:
 
     GuardedDescriptor descriptor_;
     std::mutex discovery_;
+    HandshakePause pause_;
     std::set<Locator_t> known_;
 };
 

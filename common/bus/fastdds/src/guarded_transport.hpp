@@ -15,7 +15,7 @@ using Listening = std::shared_ptr<std::atomic<bool>>;
 /// early: the immediate answer of a Cyclone DDS node is then lost, and its next one comes 1 s later.
 ///
 /// Datagrams of discovery pass one at a time, also where they arrive by multicast and by unicast at once. Fast DDS 2.9.1 may otherwise never
-/// reply to the handshake of a node that announces itself to both (common/bus/README.md). Messages of the handshake wait (handshake.hpp).
+/// reply to the handshake of a node that announces itself to both (common/bus/README.md). Received messages of a handshake wait (handshake.hpp).
 std::shared_ptr<rtps::TransportDescriptorInterface> guarded(
     std::shared_ptr<rtps::TransportDescriptorInterface> transport, Listening listening);
 

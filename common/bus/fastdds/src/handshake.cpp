@@ -34,4 +34,9 @@ bool is_handshake(const std::uint8_t* data, std::size_t size)
     return false;
 }
 
+std::chrono::nanoseconds HandshakePause::left() const
+{
+    return std::max(std::chrono::nanoseconds{last_ - now()} + length, std::chrono::nanoseconds{0});
+}
+
 }  // namespace quorient::bus::fastdds

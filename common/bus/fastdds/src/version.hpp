@@ -42,6 +42,7 @@
 #include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
 #include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -83,6 +84,7 @@ inline Duration& heartbeat_response_delay(dds::DataReaderQos& qos) { return qos.
 
 /// A datagram on its way out: the first of the two parameters that describe it; the second is its size.
 using Outgoing = const wire::octet*;
+inline std::span<const wire::octet> beginning(Outgoing datagram, std::uint32_t size) { return {datagram, size}; }
 using SenderResource = wire::SenderResource;
 
 /// How a type's decoder receives its payload.
@@ -131,6 +133,11 @@ inline Duration& heartbeat_response_delay(dds::DataReaderQos& qos) { return qos.
 
 /// A datagram on its way out: the first of the two parameters that describe it; the second is its size.
 using Outgoing = const std::vector<rtps::NetworkBuffer>&;
+inline std::span<const wire::octet> beginning(Outgoing datagram, std::uint32_t)
+{
+    if (datagram.empty()) return {};
+    return {static_cast<const wire::octet*>(datagram.front().buffer), datagram.front().size};
+}
 using SenderResource = rtps::SenderResource;
 
 /// How a type's decoder receives its payload.
