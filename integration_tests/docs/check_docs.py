@@ -22,6 +22,7 @@ PAPER = re.compile(r"\bpapers? (00\d)((?:,? ?(?:and )?00\d)*)")
 LINK = re.compile(r"(?<!!)\[[^\]]*\]\(([^)\s]+)\)")
 COMMENT_LINE_OF = re.compile(r"^\s*(?://+!?|#|\*) Of\b")
 COMMENT_OF = re.compile(r"^\s*(?://+!?|#|\*) Of\b|\S.*\s//+<? [Oo]f\b")
+IGNORED = re.compile(r"build(-[^/]*)?/|(.*/)?__pycache__/")  # as .gitignore, where there is no git
 
 
 def files_of(root):
@@ -30,6 +31,7 @@ def files_of(root):
         names = listed.stdout.splitlines()
     except (OSError, subprocess.CalledProcessError):
         names = [str(path.relative_to(root)) for path in pathlib.Path(root).rglob("*") if path.is_file()]
+        names = [name for name in names if not IGNORED.match(name)]
     return [name for name in names if (pathlib.Path(root) / name).is_file()]
 
 

@@ -49,6 +49,7 @@ class Documents(unittest.TestCase):
             ("README.md", "See [paper 001](docs/references.md#paper-001), [the web](https://example.org) and [below](#below).\n\n## Below\n"),
             ("README.md", "| a table may hold " + "many " * 40 + "words |\n"),
             ("README.md", "```\n" + "code " * 40 + "\n```\n"),
+            ("build/release/a.hpp", "/// Of nothing that is ours: a build made it.\n"),
             ("tools/a.hpp", "/// The sum\n/// of all frames. [paper 001, eq 3]\n"),
         ]:
             with self.subTest(path=path, text=text):
