@@ -22,6 +22,8 @@ DetectorService::DetectorService(const system::DetectorProcess& settings, bus::B
     : settings_(settings),
       node_(settings.process.node, bus, loop),
       verdicts_(bus.advertise(bus::topics::verdict)),
+      shedding_(node_, "verdicts"),
+      outlet_(shedding_, loop, [this](const FaultVerdict& verdict) { send(verdict); }),
       diagnosis_(bus, node_, settings.detector),
       intake_(settings.process.node.unit, settings.kind),
       events_(node_),
@@ -98,12 +100,18 @@ void DetectorService::assess(const SensorFrame& frame)
     verdict.stamp_ns = frame.stamp_ns;
     verdict.stamp_ns[static_cast<std::size_t>(Hop::detector_in)] = node_.settings().stamps ? arrival_ns_ : 0;
     verdict.stamp_ns[static_cast<std::size_t>(Hop::detector_out)] = node_.stamp();
-    if (verdicts_.publish(verdict)) ++node_.status().published;
+    shedding_.see(identity_of(frame), frame.stamp_ns, frame.interval_s, arrival_ns_);
+    outlet_.give(verdict);
     node_.handled(identity_of(frame), arrival_ns_);
     node_.set_state(ServiceState::running);
     adoption_.on_verdict(verdict);
     diagnosis_.update(*monitor_, *intake_.description());
     events_.report_changes(verdict, *intake_.description(), monitor_->detector().reason(), diagnosis_.latest());
+}
+
+void DetectorService::send(const FaultVerdict& verdict)
+{
+    if (verdicts_.publish(verdict)) ++node_.status().published;
 }
 
 void DetectorService::adopt(const Exclusions& exclusions)
@@ -120,6 +128,7 @@ void DetectorService::on_lane_attitude(const AttitudeState& attitude)
 void DetectorService::on_voted(const VotedAttitude& voted)
 {
     if (voted.unit != settings_.process.node.unit) return;
+    shedding_.see_voted(identity_of(voted), voted.stamp_ns, node_.clock().steady_ns());
     const bool keeps = adoption_.on_voted(voted);
     if (!monitor_) return;
     adopt(keeps ? adoption_.kept(intake_.description()->epoch) : adoption_.missed(voted, events_.last().isolated_mask));

@@ -5,6 +5,7 @@
 #include "quorient/fdi/fault_monitor.hpp"
 #include "quorient/runtime/frame_intake.hpp"
 #include "quorient/runtime/node.hpp"
+#include "quorient/runtime/shedding.hpp"
 #include "quorient/system/system.hpp"
 #include "verdict_events.hpp"
 
@@ -26,12 +27,15 @@ private:
     void handle_accepted();
     bool prepare(const ClusterDescription& description);
     void assess(const SensorFrame& frame);
+    void send(const FaultVerdict& verdict);
     void adopt(const Exclusions& exclusions);
     bool look_at_readiness();  ///< @returns whether that is over
 
     system::DetectorProcess settings_;
     runtime::Node node_;
     bus::Publisher<FaultVerdict> verdicts_;
+    runtime::Shedding shedding_;
+    runtime::Outlet<FaultVerdict> outlet_;
     DiagnosisOutput diagnosis_;
     bus::Subscription<SensorFrame>* frames_ = nullptr;
     runtime::FrameIntake intake_;

@@ -22,6 +22,8 @@ IntegratorService::IntegratorService(const system::IntegratorProcess& settings, 
     : settings_(settings),
       node_(settings.process.node, bus, loop),
       attitudes_(bus.advertise(bus::topics::attitude)),
+      shedding_(node_, "attitudes"),
+      outlet_(shedding_, loop, [this](const AttitudeState& attitude) { send(attitude); }),
       patience_timer_(loop.timer([this] { publish_pending(); })),
       intake_(settings.process.node.unit, settings.kind),
       events_(node_),
@@ -119,12 +121,14 @@ bool IntegratorService::same_axes(const ClusterDescription& description)
 
 void IntegratorService::integrate(const SensorFrame& frame)
 {
+    shedding_.see(identity_of(frame), frame.stamp_ns, frame.interval_s, arrival_ns_);
     integrator_->add(frame);
     pending_ = identity_of(frame);
     stamps_ = frame.stamp_ns;
     stamps_[static_cast<std::size_t>(Hop::integrator_in)] = node_.settings().stamps ? arrival_ns_ : 0;
     node_.set_state(ServiceState::running);
-    if (verdict_ && identity_of(*verdict_) >= *pending_) publish_pending();
+    // A frame that is left out waits for no verdict.
+    if (shedding_.leaves_out(*pending_) || (verdict_ && identity_of(*verdict_) >= *pending_)) publish_pending();
     else patience_timer_.set(arrival_ns_ + static_cast<std::int64_t>(settings_.patience * frame.interval_s * 1e9));
 }
 
@@ -153,15 +157,21 @@ void IntegratorService::publish_pending()
     auto attitude = integrator_->publish();
     attitude.stamp_ns = stamps_;
     attitude.stamp_ns[static_cast<std::size_t>(Hop::integrator_out)] = node_.stamp();
-    if (attitudes_.publish(attitude)) ++node_.status().published;
+    outlet_.give(attitude);
     node_.handled(identity_of(attitude), arrival_ns_);
     events_.report_changes(attitude, *intake_.description(), integrator_->history_too_short());
     resets_.on_published(*integrator_, identity_of(attitude));
 }
 
+void IntegratorService::send(const AttitudeState& attitude)
+{
+    if (attitudes_.publish(attitude)) ++node_.status().published;
+}
+
 void IntegratorService::on_voted(const VotedAttitude& voted)
 {
     if (voted.unit != settings_.process.node.unit) return;
+    shedding_.see_voted(identity_of(voted), voted.stamp_ns, node_.clock().steady_ns());
     if (!integrator_) {
         if (!first_voted_ || identity_of(voted) >= identity_of(*first_voted_)) first_voted_ = voted;
         return;

@@ -5,6 +5,7 @@
 #include "quorient/geometry/sensor_cluster.hpp"
 #include "quorient/runtime/frame_intake.hpp"
 #include "quorient/runtime/node.hpp"
+#include "quorient/runtime/shedding.hpp"
 #include "quorient/system/system.hpp"
 #include "reset_orders.hpp"
 
@@ -28,11 +29,14 @@ private:
     bool same_axes(const ClusterDescription& description);
     void integrate(const SensorFrame& frame);
     void publish_pending();
+    void send(const AttitudeState& attitude);
     bool look_at_readiness();  ///< @returns whether that is over
 
     system::IntegratorProcess settings_;
     runtime::Node node_;
     bus::Publisher<AttitudeState> attitudes_;
+    runtime::Shedding shedding_;
+    runtime::Outlet<AttitudeState> outlet_;
     bus::Subscription<SensorFrame>* frames_ = nullptr;
     bus::Subscription<FaultVerdict>* verdicts_ = nullptr;
     runtime::Timer& patience_timer_;

@@ -7,7 +7,9 @@
 #include "quorient/system/system.hpp"
 #include "sources.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <iterator>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -64,8 +66,14 @@ public:
 
     Rig()
     {
-        ear_.on(bus_->subscribe(bus::topics::verdict), [this](const FaultVerdict& verdict) { verdict_ = verdict; });
-        ear_.on(bus_->subscribe(bus::topics::attitude), [this](const AttitudeState& attitude) { attitude_ = attitude; });
+        ear_.on(bus_->subscribe(bus::topics::verdict), [this](const FaultVerdict& verdict) {
+            verdict_ = verdict;
+            ++verdicts_;
+        });
+        ear_.on(bus_->subscribe(bus::topics::attitude), [this](const AttitudeState& attitude) {
+            attitude_ = attitude;
+            ++attitudes_;
+        });
         ear_.on(bus_->subscribe(bus::topics::event), [this](const HealthEvent& event) { events_.push_back(event); });
         begin_epoch(first_epoch);
     }
@@ -92,6 +100,7 @@ public:
         SensorFrame frame;
         source_->advance_to(next_++, frame, truth_);
         pass_time(frame_ns);
+        frame.stamp_ns[static_cast<std::size_t>(Hop::sensor)] = clock_.steady_ns() - late_ns_;
         publish(bus::topics::frame, frame);
         run(services...);
     }
@@ -101,6 +110,9 @@ public:
     {
         for (unsigned i = 0; i < count; ++i) frame(services...);
     }
+
+    /// From now on services get frames so long after they were sent.
+    void delay_frames(std::int64_t late_ns) { late_ns_ = late_ns; }
 
     /// Frames that nobody gets.
     void lose(std::uint64_t count)
@@ -124,23 +136,35 @@ public:
         bus_->advertise(topic).publish(message);
     }
 
+    std::int64_t now_ns() const { return clock_.steady_ns(); }
     std::uint64_t next_sequence() const { return next_; }
     const FaultVerdict& verdict() const { return verdict_; }
     const AttitudeState& attitude() const { return attitude_; }
+    unsigned verdicts() const { return verdicts_; }    ///< so far
+    unsigned attitudes() const { return attitudes_; }  ///< so far
     const TruthState& truth() const { return truth_; }  ///< of the newest frame
 
     /// What was answered to this request, in order.
     std::vector<HealthEvent> answers(std::uint64_t request) const
     {
-        std::vector<HealthEvent> found;
-        for (const auto& event : events_) {
-            if (event.request == request) found.push_back(event);
-        }
-        return found;
+        return events_with([request](const HealthEvent& event) { return event.request == request; });
+    }
+
+    std::vector<HealthEvent> events(EventCode code) const
+    {
+        return events_with([code](const HealthEvent& event) { return event.code == octet(code); });
     }
 
 private:
     static constexpr std::int64_t frame_ns = 5'000'000;
+
+    template <class Predicate>
+    std::vector<HealthEvent> events_with(Predicate wanted) const
+    {
+        std::vector<HealthEvent> found;
+        std::ranges::copy_if(events_, std::back_inserter(found), wanted);
+        return found;
+    }
 
     bus::LocalHub hub_;
     runtime::VirtualClock clock_;
@@ -149,9 +173,12 @@ private:
     runtime::EventLoop ear_{*bus_, clock_, never_stop_};
     std::unique_ptr<sensor::FrameSource> source_;
     std::uint64_t next_ = 0;
+    std::int64_t late_ns_ = 0;
     TruthState truth_;
     FaultVerdict verdict_;
     AttitudeState attitude_;
+    unsigned verdicts_ = 0;
+    unsigned attitudes_ = 0;
     std::vector<HealthEvent> events_;
 };
 

@@ -2,6 +2,8 @@
 
 #include "quorient/messages/name.hpp"
 
+#include <algorithm>
+
 namespace quorient::voter {
 
 namespace {
@@ -21,6 +23,8 @@ VoterService::VoterService(const system::VoterProcess& settings, bus::Bus& bus, 
       node_(settings.process.node, bus, loop),
       outputs_(bus.advertise(bus::topics::voter_output)),
       voted_(bus.advertise(bus::topics::voted, ownership(settings.voting))),
+      shedding_(node_, "frames"),
+      pace_(settings.voting.lanes.size()),
       poll_timer_(loop.timer([this] {
           brain_.poll(node_.clock().steady_ns());
           drain();
@@ -37,10 +41,11 @@ VoterService::VoterService(const system::VoterProcess& settings, bus::Bus& bus, 
         brain_.on_verdict(verdict, now());
         drain();
     });
-    attitudes_ = &loop.on(bus.subscribe(bus::topics::attitude), [this, now](const AttitudeState& attitude) {
-        brain_.on_attitude(attitude, now());
+    attitudes_ = &loop.on(bus.subscribe(bus::topics::attitude), [this](const AttitudeState& attitude) { on_attitude(attitude); });
+    loop.after_round([this] {
+        if (!paced_) return;
+        brain_.poll(node_.clock().steady_ns());
         drain();
-        node_.handled(identity_of(attitude), arrival_ns_);
     });
     node_.watch(
         bus::topics::attitude.spec.name, [this] { return attitudes_->status(); }, true);
@@ -61,6 +66,30 @@ bool VoterService::look_at_readiness()
     if (attitudes_->status().matched < settings_.voting.lanes.size()) return false;
     node_.set_state(ServiceState::ready);
     return true;
+}
+
+void VoterService::on_attitude(const AttitudeState& attitude)
+{
+    arrival_ns_ = node_.clock().steady_ns();
+    keep_pace(attitude);
+    if (paced_ && !runtime::Pace::keeps(identity_of(attitude))) {
+        shedding_.count_skipped();
+    } else {
+        brain_.on_attitude(attitude, arrival_ns_);
+        drain();
+    }
+    node_.handled(identity_of(attitude), arrival_ns_);
+}
+
+void VoterService::keep_pace(const AttitudeState& attitude)
+{
+    const auto& lanes = settings_.voting.lanes;
+    const auto lane = std::ranges::find(lanes, attitude.lane, &voting::LaneSettings::lane);
+    if (lane == lanes.end() || attitude.unit != settings_.voting.unit || attitude.epoch != brain_.epoch()) return;
+    shedding_.see(identity_of(attitude), attitude.stamp_ns, settings_.voting.interval_s, arrival_ns_);
+    pace_.see(static_cast<std::size_t>(lane - lanes.begin()), identity_of(attitude), arrival_ns_);
+    paced_ = shedding_.active() || pace_.most_shed(arrival_ns_);
+    brain_.keep_pace(paced_ ? runtime::Pace::kept_of : 1);
 }
 
 void VoterService::drain()

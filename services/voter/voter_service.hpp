@@ -1,6 +1,8 @@
 #pragma once
 
+#include "lane_pace.hpp"
 #include "quorient/runtime/node.hpp"
+#include "quorient/runtime/shedding.hpp"
 #include "quorient/system/system.hpp"
 #include "quorient/voting/voter.hpp"
 #include "ros2_output.hpp"
@@ -15,6 +17,8 @@ public:
     VoterService(const system::VoterProcess& settings, bus::Bus& bus, runtime::EventLoop& loop);
 
 private:
+    void on_attitude(const AttitudeState& attitude);
+    void keep_pace(const AttitudeState& attitude);
     void drain();
     void stamp(VotedAttitude& output);
     bool look_at_readiness();  ///< @returns whether that is over
@@ -24,6 +28,9 @@ private:
     runtime::Node node_;
     bus::Publisher<VotedAttitude> outputs_;
     bus::Publisher<VotedAttitude> voted_;
+    runtime::Shedding shedding_;
+    LanePace pace_;
+    bool paced_ = false;  ///< this voter or a lane sheds
     bus::Subscription<AttitudeState>* attitudes_ = nullptr;
     runtime::Timer& poll_timer_;
     voting::Voter brain_;

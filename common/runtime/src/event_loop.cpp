@@ -52,7 +52,9 @@ bool EventLoop::dispatch()
 {
     bool any = false;
     for (auto& input : inputs_) any = input->poll() || any;
-    return fire_timers() || any;
+    any = fire_timers() || any;
+    for (auto& handler : after_round_) handler();
+    return any;
 }
 
 std::int64_t EventLoop::next_deadline_ns() const

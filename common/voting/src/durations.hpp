@@ -21,6 +21,15 @@ struct Durations {
     {
     }
 
+    /// Where one in so many frames comes.
+    Durations at_pace(unsigned one_in) const
+    {
+        Durations paced = *this;
+        paced.patience_ns *= one_in;
+        paced.silence_ns *= one_in;
+        return paced;
+    }
+
     std::int64_t interval_ns;
     std::int64_t patience_ns;
     std::int64_t silence_ns;

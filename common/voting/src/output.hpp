@@ -19,6 +19,9 @@ public:
     Output(const VoterSettings& settings, const Durations& durations, const OtherVoters& others, Frames& frames, OwnedStream& owned,
            Narrator& narrator, VoterCounters& counters);
 
+    /// Silence lasts so long from now on.
+    void keep_pace(const Durations& durations) { durations_ = durations; }
+
     /// The stream goes on from another voter's output, unless it is farther already.
     void adopt(const VotedAttitude& output, std::int64_t now_ns);
 

@@ -43,14 +43,14 @@ void Voter::on_attitude(const AttitudeState& attitude, std::int64_t now_ns)
 {
     notice(now_ns);
     frames_->on_attitude(attitude, *now_ns_);
-    go_on();
+    go_on(one_in_ == 1);
 }
 
 void Voter::on_verdict(const FaultVerdict& verdict, std::int64_t now_ns)
 {
     notice(now_ns);
     frames_->on_verdict(verdict, *now_ns_);
-    go_on();
+    go_on(one_in_ == 1);
 }
 
 void Voter::on_other_voter(const VotedAttitude& output, std::int64_t now_ns)
@@ -58,13 +58,22 @@ void Voter::on_other_voter(const VotedAttitude& output, std::int64_t now_ns)
     notice(now_ns);
     const bool own = output.voter == settings_->voter && output.unit == settings_->unit;
     if (!own && !others_->on_output(output, *now_ns_)) ++counters_->foreign;
-    go_on();
+    go_on(one_in_ == 1);
 }
 
 void Voter::poll(std::int64_t now_ns)
 {
     notice(now_ns);
-    go_on();
+    go_on(true);
+}
+
+void Voter::keep_pace(unsigned one_in)
+{
+    if (one_in == one_in_) return;
+    one_in_ = one_in;
+    const Durations paced = Durations(*settings_).at_pace(one_in);
+    frames_->keep_pace(paced);
+    output_->keep_pace(paced);
 }
 
 bool Voter::next_owned(VotedAttitude& output, std::int64_t now_ns)
@@ -86,6 +95,11 @@ bool Voter::next_event(VoterEvent& event)
 VoteLevel Voter::level() const
 {
     return output_->level();
+}
+
+std::uint64_t Voter::epoch() const
+{
+    return frames_->newest().value_or(Identity{}).epoch;
 }
 
 std::uint32_t Voter::primary_lane() const
@@ -118,7 +132,7 @@ void Voter::notice(std::int64_t now_ns)
     published_ns_.reset();
 }
 
-void Voter::go_on()
+void Voter::go_on(bool publishes)
 {
     if (const auto start = frames_->new_timeline(*now_ns_)) {
         publish_what_is_ready(true);
@@ -127,7 +141,7 @@ void Voter::go_on()
     if (state_ == VoterState::listening) end_listening();
     if (*now_ns_ >= listening_->queues_read_ns()) frames_->judge_silence(*now_ns_);
     if (state_ != VoterState::listening) {
-        publish_what_is_ready(false);
+        if (publishes) publish_what_is_ready(false);
         if (output_->coast_if_due(*now_ns_)) published_ns_.reset();  // between repetitions a voter is alive by assertion alone
     }
     owned_->release(*others_, *now_ns_);
@@ -173,6 +187,7 @@ void Voter::publish_what_is_ready(bool at_once)
         const LaneIndex wanted = output_->wanted_primary(*now_ns_);
         const Ballot ballot = frames_->ballot(*sequence, wanted, output_->primary(), *now_ns_);
         if (!ballot.primary) continue;
+        if (!at_once && one_in_ > 1 && is_overtaken(*sequence)) continue;
         if (!at_once && !frames_->is_ready(*sequence, ballot, wanted, listening_->queues_read_ns(), *now_ns_)) return;
 
         const Continuity::Reset reset = output_->move_to(*ballot.primary, identity, *now_ns_);
@@ -184,6 +199,21 @@ void Voter::publish_what_is_ready(bool at_once)
     if (missed_until_ == Identity{}) return;
     missed_until_ = {};
     if (const OtherVoter* farthest = others_->farthest(*now_ns_)) adopt(farthest->newest());
+}
+
+bool Voter::is_ready(std::uint64_t sequence) const
+{
+    const LaneIndex wanted = output_->wanted_primary(*now_ns_);
+    const Ballot ballot = frames_->ballot(sequence, wanted, output_->primary(), *now_ns_);
+    return ballot.primary && frames_->is_ready(sequence, ballot, wanted, listening_->queues_read_ns(), *now_ns_);
+}
+
+/// A later frame is ready, too.
+bool Voter::is_overtaken(std::uint64_t sequence) const
+{
+    for (auto later = frames_->after(sequence); later; later = frames_->after(*later))
+        if (is_ready(*later)) return true;
+    return false;
 }
 
 /// While this voter was away, another one may have published the frame: then it is not published again. What no other voter has published

@@ -22,6 +22,19 @@ constexpr double enough = 0.95;
 constexpr std::string_view too_little_time =
     "it gets too little processor time, or its input does not arrive: see its gaps, and real-time priority in deploy/README.md";
 
+constexpr std::string_view left_out = "it is overloaded and leaves frames out, so that none is old: a lower rate, compose, shared memory, or more processors";
+
+/// OVERLOADED comes when that begins and when it ends.
+bool sheds(std::uint32_t service, std::span<const HealthEvent> events)
+{
+    const HealthEvent* newest = nullptr;
+    for (const auto& event : events) {
+        if (event.source == service && code_of(event) == EventCode::overloaded && (!newest || event.wall_time_ns >= newest->wall_time_ns))
+            newest = &event;
+    }
+    return newest && newest->severity != octet(Severity::info);
+}
+
 bool gives_one_per_frame(const ServiceStatus& status)
 {
     const auto role = role_of(status);
@@ -52,14 +65,15 @@ double Interval::rate_hz() const
     return static_cast<double>(latest.published - first.published) / elapsed_s;
 }
 
-std::vector<Starving> find_starving(std::span<const Interval> services)
+std::vector<Starving> find_starving(std::span<const Interval> services, std::span<const HealthEvent> events)
 {
     std::vector<Starving> found;
     const double sensor_hz = reference_hz(services);
     for (const auto& service : services) {
         if (!gives_one_per_frame(service.latest) || state_of(service.latest) != ServiceState::running) continue;
         if (!gave_before(service) || !service.is_measured() || service.rate_hz() >= enough * sensor_hz) continue;
-        found.push_back({std::string{text_of(service.latest.name)}, service.rate_hz(), sensor_hz});
+        found.push_back({std::string{text_of(service.latest.name)}, service.rate_hz(), sensor_hz,
+                         sheds(service.latest.service, events)});
     }
     return found;
 }
@@ -67,16 +81,17 @@ std::vector<Starving> find_starving(std::span<const Interval> services)
 std::string starving_text(std::span<const Starving> starving)
 {
     std::string text;
-    for (const auto& [service, rate_hz, sensor_hz] : starving)
-        text += fmt::format("STARVING: {} gives {:.0f} of {:.0f} frames per second: {}\n", service, rate_hz, sensor_hz, too_little_time);
+    for (const auto& [service, rate_hz, sensor_hz, sheds] : starving)
+        text += fmt::format("STARVING: {} gives {:.0f} of {:.0f} frames per second: {}\n", service, rate_hz, sensor_hz,
+                            sheds ? left_out : too_little_time);
     return text;
 }
 
 nlohmann::ordered_json starving_json(std::span<const Starving> starving)
 {
     auto list = nlohmann::ordered_json::array();
-    for (const auto& [service, rate_hz, sensor_hz] : starving)
-        list.push_back({{"service", service}, {"rate_hz", rate_hz}, {"sensor_hz", sensor_hz}});
+    for (const auto& [service, rate_hz, sensor_hz, sheds] : starving)
+        list.push_back({{"service", service}, {"rate_hz", rate_hz}, {"sensor_hz", sensor_hz}, {"overloaded", sheds}});
     return list;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "quorient/messages/health_event.hpp"
 #include "quorient/messages/service_status.hpp"
 
 #include <nlohmann/json.hpp>
@@ -23,11 +24,13 @@ struct Starving {
     std::string service;
     double rate_hz = 0;
     double sensor_hz = 0;
+    bool sheds = false;  ///< by its own decision
 };
 
 /// The detectors, integrators and voters that published less than 95 % as many samples as the sensor sent frames. Where no sensor answers,
 /// the quickest service stands in for it. One that had published nothing at the first status has only begun, and is not judged.
-std::vector<Starving> find_starving(std::span<const Interval> services);
+/// @param events  of these services; OVERLOADED says which of them leave frames out
+std::vector<Starving> find_starving(std::span<const Interval> services, std::span<const HealthEvent> events);
 
 /// One line each.
 std::string starving_text(std::span<const Starving> starving);

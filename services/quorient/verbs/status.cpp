@@ -150,7 +150,7 @@ std::vector<report::Starving> starving_of(const Received& received)
 {
     std::vector<report::Interval> services;
     for (const auto& [id, heard] : received.services) services.push_back(heard);
-    return report::find_starving(services);
+    return report::find_starving(services, received.events);
 }
 
 void print(const Received& received, const StatusOptions& options, std::int64_t now_ns)

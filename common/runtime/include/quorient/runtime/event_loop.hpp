@@ -52,6 +52,9 @@ public:
     /// Called when all that is there has been handled, for as long as it returns true; must be short.
     void when_idle(std::function<bool()> work) { idle_.push_back(std::move(work)); }
 
+    /// Called when all inputs have been read once and what is due has been done.
+    void after_round(std::function<void()> handler) { after_round_.push_back(std::move(handler)); }
+
     /// Spins instead of blocking: a core for a little latency.
     void spin(bool on) { spin_ = on; }
 
@@ -91,6 +94,7 @@ private:
     std::list<std::unique_ptr<Input>> inputs_;
     std::list<Timer> timers_;
     std::list<std::function<bool()>> idle_;
+    std::list<std::function<void()>> after_round_;
     bool spin_ = false;
     bool quit_ = false;
     int exit_code_ = 0;

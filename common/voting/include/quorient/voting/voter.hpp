@@ -83,6 +83,10 @@ public:
     /// Time passes: patience ends, lanes fall silent, a coasting output is due.
     void poll(std::int64_t now_ns);
 
+    /// Frames come at the pace of one in so many, since this voter or its lanes are overloaded; 1 = all of them come. Then the voter waits
+    /// and lets lanes be silent for so many times longer, and gives out frames in poll alone: the newest one that is ready, none before it.
+    void keep_pace(unsigned one_in);
+
     /// When poll must be called at the latest.
     std::int64_t next_deadline_ns() const { return promised_ns_; }
 
@@ -96,6 +100,7 @@ public:
 
     const VoterCounters& counters() const { return *counters_; }
     VoteLevel level() const;
+    std::uint64_t epoch() const;         ///< of the frames, 0 before the first one
     std::uint32_t primary_lane() const;  ///< lane id, 0 while there is none
     VoterState state() const { return state_; }
     bool owns() const { return state_ == VoterState::owning; }
@@ -108,10 +113,12 @@ public:
 
 private:
     void notice(std::int64_t now_ns);
-    void go_on();
+    void go_on(bool publishes);
     void end_listening();
     bool nobody_took_over() const;
     void publish_what_is_ready(bool at_once);
+    bool is_ready(std::uint64_t sequence) const;
+    bool is_overtaken(std::uint64_t sequence) const;
     bool follow_others_to(Identity identity);
     void adopt(const VotedAttitude& output);
     void consider_state();
@@ -129,6 +136,7 @@ private:
     std::optional<std::int64_t> now_ns_;             ///< The latest time passed in; none before the first call.
     std::int64_t promised_ns_;                       ///< When poll was asked for. Later than now_ns_ after every call.
     std::optional<std::int64_t> published_ns_;       ///< When a frame was last published; none after a repetition or an absence.
+    unsigned one_in_ = 1;                            ///< As told by keep_pace().
     bool owned_before_ = false;                      ///< While listening: it owned `voted` before it was delayed.
     Identity missed_until_;                          ///< After listening: frames up to this one may have been published by another voter.
 };
