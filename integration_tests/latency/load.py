@@ -2,6 +2,7 @@
 
     sudo python3 -m integration_tests.latency.load                    # all rows, about six minutes; the table goes to standard output
     python3 -m integration_tests.latency.load --free 0.25 --rates 200
+    python3 -m integration_tests.latency.load --free 1 --rates 1000 --vendors "Fast DDS" --processors 0    # one processor does not carry that
 
 The load is stress-ng's (a Debian package), at the priority of this program. `launch` reads all topics and judges the run, `quorient-latency-probe` reads the ages."""
 import argparse
@@ -93,9 +94,12 @@ def main():
     parser.add_argument("--rates", type=int, nargs="+", default=[200, 1000])
     parser.add_argument("--vendors", nargs="+", choices=VENDORS, default=["both vendors"])
     parser.add_argument("--seconds", type=float, default=15, help="of frames in each run")
+    parser.add_argument("--processors", type=int, nargs="+", help="only these, for everything here; all if not stated")
     parser.add_argument("--priority", type=int, help="the system file's `priority`; the load has none")
     parser.add_argument("--domain", type=int, default=58)
     options = parser.parse_args()
+    if options.processors:
+        os.sched_setaffinity(0, options.processors)
     print("| " + " | ".join(HEADER) + " |\n|" + "---|" * len(HEADER), flush=True)
     wrong = False
     for vendors in options.vendors:

@@ -13,7 +13,7 @@ constexpr double old_at_least_s = 0.01;
 constexpr std::int64_t forgiveness = 16;
 
 /// In a trial so little is enough to tell that the overload goes on.
-constexpr std::int64_t relapse_ns = 20'000'000;
+constexpr std::int64_t relapse_ns = 10'000'000;
 
 /// In a trial the others begin at the same stamp, but their samples are on the way.
 constexpr std::int64_t grace_ns = 1'000'000'000;

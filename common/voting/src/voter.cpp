@@ -140,8 +140,8 @@ void Voter::go_on(bool publishes)
     }
     if (state_ == VoterState::listening) end_listening();
     if (*now_ns_ >= listening_->queues_read_ns()) frames_->judge_silence(*now_ns_);
-    if (state_ != VoterState::listening) {
-        if (publishes) publish_what_is_ready(false);
+    if (publishes && state_ != VoterState::listening) {
+        publish_what_is_ready(false);
         if (output_->coast_if_due(*now_ns_)) published_ns_.reset();  // between repetitions a voter is alive by assertion alone
     }
     owned_->release(*others_, *now_ns_);
