@@ -76,7 +76,7 @@ TEST_P(AnOverload, is_no_standstill_of_a_fraction_of_a_second)
 {
     Consumer consumer(interval_ns());
     for (int stop = 0; stop < 50; ++stop) {
-        consumer.work_for(s, quick);
+        consumer.work_for(stop % 2 == 0 ? s : 100 * ms, quick);
         consumer.stand_still(300 * ms);
     }
     consumer.work_for(s, quick);

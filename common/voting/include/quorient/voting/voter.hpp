@@ -100,7 +100,7 @@ public:
 
     const VoterCounters& counters() const { return *counters_; }
     VoteLevel level() const;
-    std::uint64_t epoch() const;         ///< of the frames, 0 before the first one
+    std::uint64_t epoch() const;         ///< that the frames belong to, 0 before the first one
     std::uint32_t primary_lane() const;  ///< lane id, 0 while there is none
     VoterState state() const { return state_; }
     bool owns() const { return state_ == VoterState::owning; }
