@@ -22,10 +22,10 @@ constexpr double enough = 0.95;
 constexpr std::string_view too_little_time =
     "it gets too little processor time, or its input does not arrive: see its gaps, and real-time priority in deploy/README.md";
 
-constexpr std::string_view left_out = "it is overloaded and leaves frames out, so that none is old: a lower rate, compose, shared memory, or more processors";
+constexpr std::string_view leaves_frames_out = "it is overloaded and leaves frames out, so that none is old: a lower rate, compose, shared memory, or more processors";
 
 /// OVERLOADED comes when that begins and when it ends.
-bool sheds(std::uint32_t service, std::span<const HealthEvent> events)
+bool is_shedding(std::uint32_t service, std::span<const HealthEvent> events)
 {
     const HealthEvent* newest = nullptr;
     for (const auto& event : events) {
@@ -73,7 +73,7 @@ std::vector<Starving> find_starving(std::span<const Interval> services, std::spa
         if (!gives_one_per_frame(service.latest) || state_of(service.latest) != ServiceState::running) continue;
         if (!gave_before(service) || !service.is_measured() || service.rate_hz() >= enough * sensor_hz) continue;
         found.push_back({std::string{text_of(service.latest.name)}, service.rate_hz(), sensor_hz,
-                         sheds(service.latest.service, events)});
+                         is_shedding(service.latest.service, events)});
     }
     return found;
 }
@@ -83,7 +83,7 @@ std::string starving_text(std::span<const Starving> starving)
     std::string text;
     for (const auto& [service, rate_hz, sensor_hz, sheds] : starving)
         text += fmt::format("STARVING: {} gives {:.0f} of {:.0f} frames per second: {}\n", service, rate_hz, sensor_hz,
-                            sheds ? left_out : too_little_time);
+                            sheds ? leaves_frames_out : too_little_time);
     return text;
 }
 
