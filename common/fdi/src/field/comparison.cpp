@@ -142,7 +142,7 @@ void Comparison::add_to(ComponentSums& sums, std::size_t component, const Deviat
             if (!compared.has(m)) continue;
             filter.deviation[m] = weighted * deviation.clipped[m];
             filter.noise[m] = weighted * weighted * noise_.own(component, m);
-            if (count_ == 3) filter.of_pair_without(m) = weighted * weighted * noise_.others(component, m);
+            if (count_ == 3) filter.noise_of_others[m] = weighted * weighted * noise_.others(component, m);
         }
     }
 }
@@ -184,7 +184,7 @@ void Comparison::add_slow(ComponentSums& sums, std::size_t component, double wei
             if (!compared.has(m)) continue;
             slow.deviation[m] = weighted * residual[m];
             slow.noise[m] = weighted * weighted * noise_.own(component, m);
-            if (count_ == 3) slow.of_pair_without(m) = weighted * weighted * noise_.others(component, m);
+            if (count_ == 3) slow.noise_of_others[m] = weighted * weighted * noise_.others(component, m);
         }
     }
 }

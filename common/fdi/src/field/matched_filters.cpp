@@ -88,7 +88,7 @@ inline MatchedFilters::Contrast MatchedFilters::contrast_of(const Window& window
         if (j != m && window.compared.has(j)) squares += (deviation[j] - mean) * (deviation[j] - mean);
     contrast.difference = deviation[m] - mean;
     const bool by_pair = count_ == 3 && windows_.is_long(window.frames);
-    contrast.variance = sums.noise[m] + (by_pair ? sums.of_pair_without(m) / n : noise / (n * n));
+    contrast.variance = sums.noise[m] + (by_pair ? sums.noise_of_others[m] / n : noise / (n * n));
     contrast.scatter = std::sqrt(squares / (n - 1));
     return contrast;
 }

@@ -3,6 +3,7 @@
 #include "field/parameters.hpp"
 #include "field/running_sums.hpp"
 
+#include <array>
 #include <vector>
 
 namespace quorient::fdi::field {
@@ -27,11 +28,8 @@ constexpr Parameter parameter_of(Filter filter, std::size_t component)
 struct FilterSums {
     Parameters regressors = Parameters::Zero();  ///< w t phi: what a unit error of each parameter would contribute
     PerInstrument deviation{};                   ///< w t d_m
-    PerInstrument noise{};                       ///< w^2 t^2 V_m; of three instruments, the places behind them hold of_pair_without()
-
-    /// w^2 t^2 V of the pair of the other two, where three instruments are compared.
-    double& of_pair_without(std::size_t m) { return noise[3 + m]; }
-    double of_pair_without(std::size_t m) const { return noise[3 + m]; }
+    PerInstrument noise{};                       ///< w^2 t^2 V_m
+    std::array<double, 3> noise_of_others{};     ///< w^2 t^2 V of the pair without m, where three instruments are compared
 
     FilterSums& operator+=(const FilterSums& other)
     {
@@ -40,6 +38,7 @@ struct FilterSums {
             deviation[m] += other.deviation[m];
             noise[m] += other.noise[m];
         }
+        for (std::size_t m = 0; m < noise_of_others.size(); ++m) noise_of_others[m] += other.noise_of_others[m];
         return *this;
     }
 
@@ -50,6 +49,7 @@ struct FilterSums {
             deviation[m] -= other.deviation[m];
             noise[m] -= other.noise[m];
         }
+        for (std::size_t m = 0; m < noise_of_others.size(); ++m) noise_of_others[m] -= other.noise_of_others[m];
         return *this;
     }
 };
