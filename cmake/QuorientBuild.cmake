@@ -36,6 +36,18 @@ if(CMAKE_BUILD_TYPE STREQUAL Release AND NOT QUORIENT_SANITIZE)
   add_link_options(LINKER:-z,relro,-z,now $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:-pie>)
 endif()
 
+# Before any target, also before the precompiled headers, which must be compiled with the same flags.
+if(QUORIENT_SANITIZE)
+  # Under -fsanitize g++ 12 sees uninitialised members of std::optional and std::regex where there are none (GCC bug 105562).
+  add_compile_options(-fsanitize=${QUORIENT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+  add_link_options(-fsanitize=${QUORIENT_SANITIZE})
+endif()
+if(QUORIENT_COVERAGE)
+  add_compile_options(--coverage)
+  add_link_options(--coverage)
+endif()
+
 # Linked by our own targets only: generated vendor code is not ours to warn about.
 add_library(quorient_warnings INTERFACE)
 target_compile_options(quorient_warnings INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror
@@ -91,17 +103,6 @@ if(QUORIENT_TESTS)
   if(QUORIENT_PRECOMPILE)
     set_target_properties(precompiled_test PROPERTIES QUORIENT_TEST ON)
   endif()
-endif()
-
-if(QUORIENT_SANITIZE)
-  # Under -fsanitize g++ 12 sees uninitialised members of std::optional and std::regex where there are none (GCC bug 105562).
-  add_compile_options(-fsanitize=${QUORIENT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
-  add_link_options(-fsanitize=${QUORIENT_SANITIZE})
-endif()
-if(QUORIENT_COVERAGE)
-  add_compile_options(--coverage)
-  add_link_options(--coverage)
 endif()
 
 # Sources of a room are compiled several at a time, since most of a compiler's work is in the headers: that halves the first build. So a name in an
