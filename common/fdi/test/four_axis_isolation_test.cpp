@@ -2,9 +2,9 @@
 
 #include "coning_model.hpp"
 #include "four_axes/extrapolation_detector.hpp"
-#include "quorient/fdi/fault_monitor.hpp"
 #include "four_axes/vector_detector.hpp"
-#include "quorient/geometry/layouts.hpp"
+#include "four_axis_scene.hpp"
+#include "quorient/fdi/fault_monitor.hpp"
 #include "quorient/messages/meaning.hpp"
 
 #include <gmock/gmock.h>
@@ -16,16 +16,7 @@
 namespace quorient::fdi {
 namespace {
 
-constexpr double quantum = 0.4848e-6;
 constexpr double interval_s = 0.005;
-
-geometry::SensorCluster cone_4()
-{
-    auto cluster = geometry::layout("cone-4").value();
-    cluster.quantum.setConstant(quantum);
-    cluster.interval_s = interval_s;
-    return cluster;
-}
 
 /// A unit on the paper's motion whose axis `faulty` measures 0.8 of the truth between two frames.
 struct Scenario {
@@ -50,7 +41,7 @@ struct Outcomes {
 class Unit {
 public:
     Unit(const std::string& method, std::uint64_t seed)
-        : cluster_(cone_4()),
+        : cluster_(cone_4(interval_s)),
           monitor_(FaultMonitor::make({.method = method}, {}, cluster_).value()),
           random_(seed),
           quantise_(quantum, random_)
@@ -85,17 +76,10 @@ public:
     {
         const Eigen::Vector4d exact =
             cluster_.axes * motion_.increment(scenario.begin_s + interval_s * static_cast<double>(sequence), interval_s);
-        SensorFrame frame;
-        frame.epoch = 1;
-        frame.sequence = sequence;
-        frame.interval_s = interval_s;
-        frame.axis_count = 4;
-        frame.valid_mask = 0b1111;
-        for (std::size_t axis = 0; axis < 4; ++axis) {
+        return four_axis_frame(sequence, interval_s, exact, [&](std::size_t axis, double increment) {
             const bool faulty = axis == scenario.faulty && sequence >= scenario.from && sequence < scenario.until;
-            frame.increment[axis] = quantise_(axis, exact(static_cast<Eigen::Index>(axis)) * (faulty ? 0.8 : 1.0));
-        }
-        return frame;
+            return quantise_(axis, increment * (faulty ? 0.8 : 1.0));
+        });
     }
 
     /// The fault's parity in the first two frames is well beyond the bound, so that it can be confirmed in them.
@@ -380,7 +364,7 @@ TEST(FourAxisIsolation, refuses_what_it_cannot_serve_and_says_why)
     auto cluster = geometry::make_cluster(flat).value();
     cluster.quantum.setConstant(quantum);
     EXPECT_THAT(refusal(cluster), ::testing::HasSubstr("one plane"));
-    EXPECT_FALSE(VectorDetector::make({.tolerance = std::nan("")}, cone_4()));
+    EXPECT_FALSE(VectorDetector::make({.tolerance = std::nan("")}, cone_4(interval_s)));
 }
 
 }  // namespace

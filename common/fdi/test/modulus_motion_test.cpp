@@ -1,7 +1,7 @@
 // The paper's predictor takes the modulus for a sum of two exponentials. A vehicle's motion is none.
 
+#include "four_axis_scene.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
-#include "quorient/geometry/layouts.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,6 @@ namespace quorient::fdi {
 namespace {
 
 constexpr double interval_s = 0.005;
-constexpr double quantum = 0.4848e-6;
 constexpr double two_pi = 2 * std::numbers::pi;
 constexpr std::uint64_t onset = 700;
 
@@ -66,26 +65,18 @@ Count play(double scale, std::uint64_t passing = 0)
     std::mt19937_64 random(seed);
     Count count;
     for (int draw = 0; draw < 300; ++draw) {
-        auto cluster = geometry::layout("cone-4").value();
-        cluster.quantum.setConstant(quantum);
-        cluster.interval_s = interval_s;
+        const auto cluster = cone_4(interval_s);
         auto monitor = FaultMonitor::make({.method = "extrapolation"}, {}, cluster).value();
         const Swaying motion(random);
         const std::size_t faulty = random() % 4;
         AxisMask isolated = 0;
         for (std::uint64_t sequence = 0; sequence < onset + 400 && isolated == 0; ++sequence) {
             const Eigen::Vector4d exact = cluster.axes * motion.increment(interval_s * static_cast<double>(sequence), interval_s);
-            SensorFrame frame;
-            frame.epoch = 1;
-            frame.sequence = sequence;
-            frame.interval_s = interval_s;
-            frame.axis_count = 4;
-            frame.valid_mask = 0b1111;
-            for (std::size_t axis = 0; axis < 4; ++axis) {
-                double measured = exact(static_cast<Eigen::Index>(axis)) * (axis == faulty && sequence >= onset ? scale : 1);
+            const SensorFrame frame = four_axis_frame(sequence, interval_s, exact, [&](std::size_t axis, double increment) {
+                double measured = increment * (axis == faulty && sequence >= onset ? scale : 1);
                 if (axis == (faulty + 1) % 4 && sequence + 28 < onset && sequence + 28 + passing >= onset) measured += 1e-3;
-                frame.increment[axis] = std::trunc(measured / quantum) * quantum;
-            }
+                return std::trunc(measured / quantum) * quantum;
+            });
             isolated = monitor.assess(frame).isolated_mask;
             if (passing > 0 && sequence < onset) monitor.readmit(std::exchange(isolated, 0));
             if (sequence < onset && monitor.assessment().outcome > Outcome::healthy) ++count.alarms;

@@ -1,8 +1,8 @@
 // Four axes: an axis whose rate turns round repeats its value for many frames. That alone must not make it stuck while another axis is faulty.
 
 #include "coning_model.hpp"
+#include "four_axis_scene.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
-#include "quorient/geometry/layouts.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,6 @@
 namespace quorient::fdi {
 namespace {
 
-constexpr double quantum = 0.4848e-6;
 constexpr double interval_s = 0.01;
 constexpr std::uint64_t onset = 400;
 constexpr double period_s = 2 * std::numbers::pi / 0.05;
@@ -30,9 +29,7 @@ struct Run {
 /// Axes isolated on the paper's motion, one of them faulty from `onset` on.
 AxisMask isolated(const Run& run, const Fault& fault)
 {
-    auto cluster = geometry::layout("cone-4").value();
-    cluster.quantum.setConstant(quantum);
-    cluster.interval_s = interval_s;
+    const auto cluster = cone_4(interval_s);
     auto monitor = FaultMonitor::make({.method = "vector"}, {}, cluster).value();
     std::mt19937_64 random(run.seed);
     CarryingQuantiser quantise(quantum, random);
@@ -40,14 +37,10 @@ AxisMask isolated(const Run& run, const Fault& fault)
     AxisMask isolated = 0;
     for (std::uint64_t sequence = 0; sequence < onset + 300; ++sequence) {
         const Eigen::Vector4d exact = cluster.axes * motion.increment(run.begin_s + interval_s * static_cast<double>(sequence), interval_s);
-        SensorFrame frame;
-        frame.epoch = 1;
-        frame.sequence = sequence;
-        frame.interval_s = interval_s;
-        frame.axis_count = 4;
-        frame.valid_mask = 0b1111;
-        for (std::size_t axis = 0; axis < 4; ++axis) frame.increment[axis] = quantise(axis, exact(static_cast<Eigen::Index>(axis)));
-        frame.increment[run.faulty] = fault(sequence, frame.increment[run.faulty]);
+        const SensorFrame frame = four_axis_frame(sequence, interval_s, exact, [&](std::size_t axis, double increment) {
+            const double sound = quantise(axis, increment);
+            return axis == run.faulty ? fault(sequence, sound) : sound;
+        });
         isolated |= monitor.assess(frame).isolated_mask;
     }
     return isolated;
