@@ -34,8 +34,10 @@ class Sight:
         for vendor in VENDORS:
             if self.replayed[vendor]:
                 yield f"{self.replayed[vendor]} replayed frames accepted on {vendor}"
-            if bool(self.renumbered[vendor]) != (self.level == "none"):
+            if self.renumbered[vendor] and self.level != "none":
                 yield f"{self.renumbered[vendor]} renumbered frames accepted on {vendor}"
+        if self.level == "none" and not any(self.renumbered.values()):
+            yield "no renumbered frame was accepted, on either vendor: the twin shows nothing"
         if self.level != "none" and not self.alive:
             yield "the system stopped"
 
