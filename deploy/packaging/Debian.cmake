@@ -29,7 +29,7 @@ set(CPACK_DEBIAN_QUORIENT_PACKAGE_CONTROL_EXTRA ${maintainer_scripts})
 
 set(CPACK_DEBIAN_QUORIENT-DEV_PACKAGE_NAME quorient-dev)
 set(CPACK_DEBIAN_QUORIENT-DEV_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_QUORIENT-DEV_PACKAGE_DEPENDS "libeigen3-dev, libexpected-dev, libfmt-dev, libboost-dev, liblz4-dev, libsqlite3-dev, libzstd-dev, zlib1g-dev, pkg-config, cmake")
+set(CPACK_DEBIAN_QUORIENT-DEV_PACKAGE_DEPENDS "libeigen3-dev, libexpected-dev, libfmt-dev, libboost-dev, liblz4-dev, libsqlite3-dev, libzstd-dev, zlib1g-dev, pkgconf, cmake")
 set(CPACK_COMPONENT_QUORIENT-DEV_DESCRIPTION "For development: static libraries, headers and CMake configuration for sensor
 geometry, fault detection and isolation, attitude integration, voting,
 simulation and recordings, and the IDL file of the DDS topics.")
