@@ -10,6 +10,7 @@ import sys
 import time
 from typing import NamedTuple
 
+from integration_tests.harness.debian import own_release
 from integration_tests.harness.judge import FINAL_ERROR_RAD, errors_beyond, first_judged, judge, missing_frames
 from integration_tests.harness.pipeline import ALL_LANES, END_OF_GRACE_FRAMES, RATE_HZ, NotInTime, Pipeline, ask_for_priority
 from integration_tests.harness.processes import BIN, CONFIGURATIONS, ROOT
@@ -24,11 +25,6 @@ FAULTY_AXIS = 1
 VOTERS = (1, 2)  # wire ids
 LANES = "abc"
 STATED = [0.5, -0.5, 0.5, 0.5]  # the attitude that an operator states after a restart of the sensor
-
-
-def own_release():
-    words = dict(line.split("=", 1) for line in pathlib.Path("/etc/os-release").read_text().splitlines() if "=" in line)
-    return words.get("VERSION_CODENAME", "").strip('"')
 
 
 def caches():

@@ -61,6 +61,12 @@ private:
     int output_ = -1;
 };
 
+/// Fast DDS 3, of which the library is called fastdds, exchanges nothing with Cyclone DDS under security (KNOWN_ISSUES.md).
+bool can_match(Vendor writing, Vendor reading)
+{
+    return writing == reading || std::string_view{QUORIENT_FASTDDS} != "fastdds";
+}
+
 enum class Order { writer_first, reader_first };
 
 class SecuredPairs : public testing::TestWithParam<std::tuple<Vendor, Vendor, Order, bus::SecurityLevel>> {
@@ -124,6 +130,7 @@ private:
 TEST_P(SecuredPairs, carry_every_topic_whoever_starts_first)
 {
     const auto [writing, reading, order, level] = GetParam();
+    if (!can_match(writing, reading)) GTEST_SKIP() << "Fast DDS 3 exchanges nothing with Cyclone DDS under security";
     const auto seed = static_cast<std::uint64_t>(::getpid());
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const auto join_as_reader = [&, reading = reading, level = level] { return join(directory.path(), "reader", reading, domain, level); };
