@@ -16,7 +16,7 @@ struct Wording {
     std::string_view ours;
 };
 
-// What yaml-cpp 0.7 says, and what it means to somebody who writes a file.
+// How yaml-cpp's messages begin (0.8 ends one with the anchor's name), and what they mean to somebody who writes a file.
 constexpr std::array wordings{
     Wording{"illegal map value",
             "a ':' that begins no value here: is the line before complete ('key: value', with a space), or the indentation "
@@ -57,7 +57,7 @@ SyntaxError syntax_error(const YAML::Exception& error, const std::string& text)
         found.text = "a tab indents this line: YAML wants spaces";
         return found;
     }
-    const auto wording = std::ranges::find(wordings, std::string_view{error.msg}, &Wording::yaml_cpp);
+    const auto wording = std::ranges::find_if(wordings, [&](const Wording& each) { return error.msg.starts_with(each.yaml_cpp); });
     if (wording != wordings.end()) found.text = wording->ours;
     return found;
 }
