@@ -6,7 +6,6 @@
 
 #include <mutex>
 #include <set>
-#include <thread>
 
 namespace quorient::bus::fastdds {
 
@@ -77,8 +76,8 @@ public:
         const auto understood = with_understood_acknacks(buffer, size);
         std::unique_lock one_at_a_time{discovery_, std::defer_lock};
         if (is_discovery(local)) {
-            one_at_a_time.lock();
-            if (is_handshake(buffer, size)) std::this_thread::sleep_for(pause_.left());
+            if (is_handshake(buffer, size)) pause_.lock_after(one_at_a_time);
+            else one_at_a_time.lock();
         }
         above->OnDataReceived(understood ? understood->data() : buffer, size, local, remote);
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <thread>
 
 namespace quorient::bus::fastdds {
 
@@ -24,9 +25,8 @@ bool is_handshake(const std::uint8_t* data, std::size_t size)
     for (std::size_t place = header_size; place + submessage_header_size <= size;) {
         const auto header = submessage_header_at(data + place);
         place += submessage_header_size;
-        if (header.length > size - place) return false;
         const bool carries = header.id == data_id || header.id == fragment_id;
-        if (carries && header.length >= writer + stateless_message_writer.size() &&
+        if (carries && std::min(header.length, size - place) >= writer + stateless_message_writer.size() &&
             std::ranges::equal(stateless_message_writer, std::span{data + place + writer, stateless_message_writer.size()}))
             return true;
         place += header.length;
@@ -37,6 +37,15 @@ bool is_handshake(const std::uint8_t* data, std::size_t size)
 std::chrono::nanoseconds HandshakePause::left() const
 {
     return std::max(std::chrono::nanoseconds{last_ - now()} + length, std::chrono::nanoseconds{0});
+}
+
+void HandshakePause::lock_after(std::unique_lock<std::mutex>& lock) const
+{
+    const std::int64_t latest = now() + std::chrono::nanoseconds{longest}.count();
+    for (lock.lock(); left() > std::chrono::nanoseconds{0} && now() < latest; lock.lock()) {
+        lock.unlock();
+        std::this_thread::sleep_for(std::min(left(), std::chrono::nanoseconds{latest - now()}));
+    }
 }
 
 }  // namespace quorient::bus::fastdds

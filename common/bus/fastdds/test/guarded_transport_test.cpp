@@ -91,6 +91,61 @@ TEST(HandshakePause, lasts_from_the_last_message_on)
     EXPECT_GE(std::chrono::steady_clock::now() - begin, HandshakePause::length);
 }
 
+TEST(HandshakePause, begins_anew_with_a_message_that_is_sent_while_a_received_one_waits)
+{
+    HandshakePause pause;
+    std::mutex mutex;
+    std::unique_lock held{mutex};
+    std::chrono::steady_clock::time_point passed;
+    std::thread receiver{[&] {
+        std::unique_lock lock{mutex, std::defer_lock};
+        pause.lock_after(lock);
+        passed = std::chrono::steady_clock::now();
+    }};
+    std::this_thread::sleep_for(std::chrono::milliseconds{1});
+    const auto sent = std::chrono::steady_clock::now();
+    pause.sent();
+    held.unlock();
+    receiver.join();
+    EXPECT_GE(passed - sent, HandshakePause::length);
+}
+
+/// @returns whether other datagrams may pass while a received message waits, although messages are sent without end.
+bool others_pass()
+{
+    HandshakePause pause;
+    std::mutex mutex;
+    std::atomic<bool> begun = false;
+    std::atomic<bool> done = false;
+    pause.sent();
+    std::thread receiver{[&] {
+        std::unique_lock lock{mutex, std::defer_lock};
+        begun = true;
+        pause.lock_after(lock);
+        done = true;
+    }};
+    while (!begun) std::this_thread::yield();
+    std::this_thread::sleep_for(std::chrono::milliseconds{1});
+    bool passed = false;
+    while (!done) {
+        pause.sent();
+        if (mutex.try_lock()) {
+            passed = passed || !done;
+            mutex.unlock();
+        }
+        std::this_thread::sleep_for(std::chrono::microseconds{100});
+    }
+    receiver.join();
+    return passed;
+}
+
+TEST(HandshakePause, ends_at_last_and_lets_other_datagrams_pass_meanwhile)
+{
+    unsigned passed = 0;
+    for (unsigned attempt = 0; attempt < 20; ++attempt) passed += others_pass() ? 1U : 0U;
+    EXPECT_GE(passed, 10U);
+}
+
 TEST(Handshake, is_recognised_whole_and_in_fragments_and_nothing_else_is)
 {
     const auto is = [](const std::vector<wire::octet>& datagram) { return is_handshake(datagram.data(), datagram.size()); };
@@ -98,9 +153,17 @@ TEST(Handshake, is_recognised_whole_and_in_fragments_and_nothing_else_is)
     EXPECT_TRUE(is(datagram_of(0x16, of_handshakes)));
     EXPECT_FALSE(is(datagram_of(0x07, of_handshakes)));
     EXPECT_FALSE(is(datagram_of(0x15, of_announcements)));
-    auto cut = datagram_of(0x15, of_handshakes);
-    cut.resize(cut.size() - 10);
-    EXPECT_FALSE(is(cut));
+}
+
+TEST(Handshake, is_recognised_without_its_payload_which_is_sent_from_another_buffer)
+{
+    for (const wire::octet id : std::array<wire::octet, 2>{0x15, 0x16}) {
+        auto beginning = datagram_of(id, of_handshakes);
+        beginning.resize(beginning.size() - 8);
+        EXPECT_TRUE(is_handshake(beginning.data(), beginning.size()));
+        beginning.pop_back();
+        EXPECT_FALSE(is_handshake(beginning.data(), beginning.size())) << "the writer's id is cut";
+    }
 }
 
 }  // namespace
