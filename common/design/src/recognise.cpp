@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 constexpr Index most_recognised = 8;
 constexpr Index most_turned = 12;
 constexpr double same_number = 1e-6;
-constexpr double turn_rounding = 1e-12;   // turning leaves this in a component
+constexpr double turn_rounding = 1e-12;  // turning leaves this in a component
 constexpr double same_line = 1e-6;  // length of the cross product
 
 /// |cosines| of all pairs and |volumes| of all triads, sorted: what a turn, a change of signs or of order leaves alone.

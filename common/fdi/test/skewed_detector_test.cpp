@@ -1,4 +1,5 @@
 #include "skewed/skewed_detector.hpp"
+#include "skewed/axis_frames.hpp"
 
 #include "skewed_scene.hpp"
 #include "quorient/fdi/methods.hpp"
@@ -292,6 +293,31 @@ TEST(SkewedDetector, names_one_that_is_at_its_range_alone_and_nobody_where_the_m
     const Told told = play(fast, *detector, 15);
     EXPECT_EQ(told.named, 0U);
     EXPECT_GT(told.saturated_frames, 200U);
+}
+
+TEST(SkewedDetector, takes_the_usual_range_of_its_class_where_none_is_stated)
+{
+    SkewedScene fast = block("dodecahedron", 14);
+    fast.cluster.range.setZero();
+    fast.motion = [](double t) -> Eigen::Vector3d {
+        return FieldScene::flight(t) + Eigen::Vector3d(0, 0, t > 8 && t < 15 ? 5000 * std::sin(std::numbers::pi * (t - 8) / 7) : 0);
+    };
+    const auto detector = detector_on(fast);
+    EXPECT_EQ(play(fast, *detector, 8).saturated_frames, 0U);
+    EXPECT_GT(play(fast, *detector, 15).saturated_frames, 200U);
+}
+
+TEST(SkewedFrames, have_no_axis_near_a_range_that_is_not_stated)
+{
+    auto cluster = geometry::layout("cone-6").value();
+    cluster.interval_s = frame_s;
+    cluster.range.setConstant(6, 10);
+    cluster.range(4) = 0;
+    skewed::AxisFrames frames(cluster);
+    const std::vector<double> increment(6, 9.9 * frame_s);
+    Measurement measurement{.identity = {}, .interval_s = frame_s, .increment = increment, .valid = all_axes(6)};
+    while (!frames.add(measurement)) ++measurement.identity.sequence;
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(frames.frame().near_range.has(i), i != 4) << "axis " << i;
 }
 
 TEST(SkewedDetector, keeps_its_word_at_other_sampling_rates)

@@ -17,7 +17,6 @@ std::string beside(const System& system, const std::string& name)
 
 namespace {
 
-
 /// Where the file itself states the axes, it states their noise too; the field detector measures biases and noise itself, also in motion.
 bool needs_rest(const File& file, const System& system)
 {

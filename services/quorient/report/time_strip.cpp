@@ -26,7 +26,7 @@ double file_plot_width(double left)
     return file_width - left - right_margin;
 }
 
-/// From 0 at the left edge to 1 at the right_margin one.
+/// From 0 at the left edge to 1 at the right one.
 double share_of(const TimeSpan& span, double time_s)
 {
     return std::clamp((time_s - span.from_s) / std::max(1e-9, span.to_s - span.from_s), 0.0, 1.0);

@@ -13,7 +13,6 @@ namespace quorient::bus::cyclonedds {
 
 namespace {
 
-
 /// Times before 1970 have a negative second and a positive rest.
 void put(std::int64_t stamp_ns, builtin_interfaces_msg_dds__Time_& time)
 {

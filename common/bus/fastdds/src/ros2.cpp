@@ -16,7 +16,6 @@ namespace {
 using VendorImu = sensor_msgs::msg::dds_::Imu_;
 using VendorDiagnostics = diagnostic_msgs::msg::dds_::DiagnosticArray_;
 
-
 /// Times before 1970 have a negative second and a positive rest.
 void put(std::int64_t stamp_ns, builtin_interfaces::msg::dds_::Time_& time)
 {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 namespace quorient::fdi::skewed {
+
 bool AxisFrames::add(const Measurement& measurement)
 {
     if (!(measurement.interval_s > 0)) return false;

@@ -4,6 +4,7 @@
 #include "field/windows.hpp"
 
 namespace quorient::fdi::skewed {
+
 AxisStart::AxisStart(const geometry::Axes& axes, double interval_s, const ClassFigures& figures)
     : axes_(axes),
       count_(static_cast<std::size_t>(axes.rows())),

@@ -203,8 +203,8 @@ const Table<SourceSection>& source_table()
     static const Table<SourceSection> table{
         "Where the frames come from.",
         {word<SourceSection, SourceKind>({.name = "kind", .sentence = "A simulation, a recording, or IMUs of a robot."}, "source",
-                                   &SourceSection::kind,
-                                   {{"simulation", SourceKind::simulation}, {"log", SourceKind::log}, {"ros2_imu", SourceKind::ros2_imu}}),
+                                         &SourceSection::kind,
+                                         {{"simulation", SourceKind::simulation}, {"log", SourceKind::log}, {"ros2_imu", SourceKind::ros2_imu}}),
          faults_row()},
         {{"unit.kind: vessel_rates",
           "A simulated vessel. `plant` or `vessel` state what really sails where it is not what the detectors believe.",
