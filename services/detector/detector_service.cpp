@@ -101,12 +101,20 @@ void DetectorService::assess(const SensorFrame& frame)
     verdict.stamp_ns[static_cast<std::size_t>(Hop::detector_in)] = node_.settings().stamps ? arrival_ns_ : 0;
     verdict.stamp_ns[static_cast<std::size_t>(Hop::detector_out)] = node_.stamp();
     shedding_.see(identity_of(frame), frame.stamp_ns, frame.interval_s, arrival_ns_);
-    outlet_.give(verdict);
+    outlet_.give(verdict, is_news(verdict));
     node_.handled(identity_of(frame), arrival_ns_);
     node_.set_state(ServiceState::running);
     adoption_.on_verdict(verdict);
     diagnosis_.update(*monitor_, *intake_.description());
     events_.report_changes(verdict, *intake_.description(), monitor_->detector().reason(), diagnosis_.latest());
+}
+
+/// What an integrator or a voter acts on differs from the verdict before.
+bool DetectorService::is_news(const FaultVerdict& verdict) const
+{
+    const FaultVerdict& last = events_.last();
+    return verdict.epoch != last.epoch || verdict.state != last.state || verdict.isolated_mask != last.isolated_mask || verdict.suspect_mask != last.suspect_mask ||
+           verdict.excluded_from != last.excluded_from || verdict.candidate_count != last.candidate_count || verdict.candidate_set != last.candidate_set;
 }
 
 void DetectorService::send(const FaultVerdict& verdict)

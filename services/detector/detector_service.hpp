@@ -28,6 +28,7 @@ private:
     bool prepare(const ClusterDescription& description);
     void assess(const SensorFrame& frame);
     void send(const FaultVerdict& verdict);
+    bool is_news(const FaultVerdict& verdict) const;
     void adopt(const Exclusions& exclusions);
     bool look_at_readiness();  ///< @returns whether that is over
 

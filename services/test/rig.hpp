@@ -3,6 +3,7 @@
 
 #include "quorient/bus/local_bus.hpp"
 #include "quorient/bus/topics.hpp"
+#include "quorient/messages/meaning.hpp"
 #include "quorient/runtime/event_loop.hpp"
 #include "quorient/system/system.hpp"
 #include "sources.hpp"
@@ -69,6 +70,7 @@ public:
         ear_.on(bus_->subscribe(bus::topics::verdict), [this](const FaultVerdict& verdict) {
             verdict_ = verdict;
             ++verdicts_;
+            if (state_of(verdict) == VerdictState::suspect) ++suspicions_;
         });
         ear_.on(bus_->subscribe(bus::topics::attitude), [this](const AttitudeState& attitude) {
             attitude_ = attitude;
@@ -141,6 +143,7 @@ public:
     const FaultVerdict& verdict() const { return verdict_; }
     const AttitudeState& attitude() const { return attitude_; }
     unsigned verdicts() const { return verdicts_; }    ///< so far
+    unsigned suspicions() const { return suspicions_; }  ///< verdicts so far whose state is SUSPECT
     unsigned attitudes() const { return attitudes_; }  ///< so far
     const TruthState& truth() const { return truth_; }  ///< of the newest frame
 
@@ -178,6 +181,7 @@ private:
     FaultVerdict verdict_;
     AttitudeState attitude_;
     unsigned verdicts_ = 0;
+    unsigned suspicions_ = 0;
     unsigned attitudes_ = 0;
     std::vector<HealthEvent> events_;
 };

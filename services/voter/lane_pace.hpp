@@ -9,8 +9,8 @@
 
 namespace quorient::voter {
 
-/// Whether most lanes leave frames out because they are overloaded: then a voter compares them in the frames that all of them keep. One lane
-/// alone does not slow the output down.
+/// Whether at least half of the lanes that speak leave frames out because they are overloaded: then a voter compares them in the frames that all
+/// of them keep. Fewer lanes do not slow the output down: what they still give out is not taken, so they count as silent.
 class LanePace {
 public:
     explicit LanePace(std::size_t lanes) : lanes_(lanes) {}
@@ -21,16 +21,22 @@ public:
         lanes_[lane].seen_ns = now_ns;
     }
 
-    bool most_shed(std::int64_t now_ns) const
+    bool sheds(std::size_t lane) const { return lanes_[lane].pace.is_shed(); }
+
+    bool many_shed(std::int64_t now_ns) const
     {
-        const auto shed = std::ranges::count_if(lanes_, [now_ns](const Lane& lane) {
-            return lane.pace.is_shed() && now_ns - lane.seen_ns < forgotten_ns;
-        });
-        return 2 * static_cast<std::size_t>(shed) > lanes_.size();
+        std::size_t speaking = 0;
+        std::size_t shedding = 0;
+        for (const Lane& lane : lanes_) {
+            if (now_ns - lane.seen_ns >= forgotten_ns) continue;
+            ++speaking;
+            if (lane.pace.is_shed()) ++shedding;
+        }
+        return shedding > 0 && 2 * shedding >= speaking;
     }
 
 private:
-    /// A lane that gives out nothing any more sheds nothing.
+    /// A lane that gives out nothing any more does not speak.
     static constexpr std::int64_t forgotten_ns = 500'000'000;
 
     struct Lane {

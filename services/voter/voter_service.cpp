@@ -71,8 +71,8 @@ bool VoterService::look_at_readiness()
 void VoterService::on_attitude(const AttitudeState& attitude)
 {
     arrival_ns_ = node_.clock().steady_ns();
-    keep_pace(attitude);
-    if (paced_ && !runtime::Pace::keeps(identity_of(attitude))) {
+    const bool sheds_alone = keep_pace(attitude);
+    if (sheds_alone || (paced_ && !runtime::Pace::keeps(identity_of(attitude)))) {
         shedding_.count_skipped();
     } else {
         brain_.on_attitude(attitude, arrival_ns_);
@@ -81,15 +81,18 @@ void VoterService::on_attitude(const AttitudeState& attitude)
     node_.handled(identity_of(attitude), arrival_ns_);
 }
 
-void VoterService::keep_pace(const AttitudeState& attitude)
+/// @returns whether this lane leaves frames out and too few others do
+bool VoterService::keep_pace(const AttitudeState& attitude)
 {
     const auto& lanes = settings_.voting.lanes;
     const auto lane = std::ranges::find(lanes, attitude.lane, &voting::LaneSettings::lane);
-    if (lane == lanes.end() || attitude.unit != settings_.voting.unit || attitude.epoch != brain_.epoch()) return;
+    if (lane == lanes.end() || attitude.unit != settings_.voting.unit || attitude.epoch != brain_.epoch()) return false;
     shedding_.see(identity_of(attitude), attitude.stamp_ns, settings_.voting.interval_s, arrival_ns_);
-    pace_.see(static_cast<std::size_t>(lane - lanes.begin()), identity_of(attitude), arrival_ns_);
-    paced_ = shedding_.active() || pace_.most_shed(arrival_ns_);
+    const auto place = static_cast<std::size_t>(lane - lanes.begin());
+    pace_.see(place, identity_of(attitude), arrival_ns_);
+    paced_ = shedding_.active() || pace_.many_shed(arrival_ns_);
     brain_.keep_pace(paced_ ? runtime::Pace::kept_of : 1);
+    return !paced_ && pace_.sheds(place);
 }
 
 void VoterService::drain()

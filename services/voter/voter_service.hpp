@@ -18,7 +18,7 @@ public:
 
 private:
     void on_attitude(const AttitudeState& attitude);
-    void keep_pace(const AttitudeState& attitude);
+    bool keep_pace(const AttitudeState& attitude);
     void drain();
     void stamp(VotedAttitude& output);
     bool look_at_readiness();  ///< @returns whether that is over

@@ -25,7 +25,7 @@ constexpr std::int64_t shed_at_least_ns = 1'000'000'000;
 
 std::int64_t SampleAge::see(std::uint64_t epoch, std::int64_t stamp_ns, std::int64_t now_ns)
 {
-    if (stamp_ns == 0) return 0;
+    if (stamp_ns <= 0) return 0;
     const std::int64_t way_ns = now_ns - stamp_ns;
     if (!begun_ || epoch != epoch_) {
         begun_ = true;
@@ -47,7 +47,8 @@ void Overload::measure(bool old, std::int64_t now_ns)
 {
     const std::int64_t span_ns = std::max<std::int64_t>(0, now_ns - last_ns_);
     // Before the first old sample the consumer stood still, or nothing came: that is no overload.
-    if (old && old_) behind_ns_ = std::min(behind_ns_ + span_ns, state_ == State::falling_behind ? lasting_ns : 2 * relapse_ns);
+    // So a gap behind an old sample counts as one such sample.
+    if (old && old_) behind_ns_ = std::min(behind_ns_ + std::min(span_ns, bound_ns_), state_ == State::falling_behind ? lasting_ns : 2 * relapse_ns);
     if (!old) behind_ns_ = std::max<std::int64_t>(0, behind_ns_ - span_ns / forgiveness);
     old_ = old;
     last_ns_ = now_ns;

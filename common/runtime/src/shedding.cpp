@@ -6,10 +6,21 @@
 
 namespace quorient::runtime {
 
+namespace {
+
+/// A queue holds fewer frames. Whoever is further behind the newest one shows that that one was wrong.
+constexpr std::uint64_t longest_queue = 1000;
+
+/// Kept frames must come at least twice in a lease of `voted`, which is 50 ms or more.
+constexpr double longest_kept_interval_s = 0.025;
+
+}  // namespace
+
 /// @returns false for a frame that is not newer
 bool Shedding::Stream::see(Identity identity, const Stamps& stamps, std::int64_t now_ns)
 {
-    if (identity <= newest) return false;
+    const bool far_behind = identity.epoch == newest.epoch && newest.sequence > identity.sequence + longest_queue;
+    if (identity <= newest && !far_behind) return false;
     newest = identity;
     const std::int64_t stamp_ns = stamps[static_cast<std::size_t>(Hop::sensor)];
     age_ns = age.see(identity.epoch, stamp_ns, now_ns);
@@ -19,6 +30,7 @@ bool Shedding::Stream::see(Identity identity, const Stamps& stamps, std::int64_t
 
 void Shedding::see(Identity identity, const Stamps& stamps, double interval_s, std::int64_t now_ns)
 {
+    if (Pace::kept_of * interval_s > longest_kept_interval_s) return;
     if (!input_.overload) {
         input_.overload.emplace(interval_s);
         voted_.overload.emplace(interval_s);
@@ -28,7 +40,8 @@ void Shedding::see(Identity identity, const Stamps& stamps, double interval_s, s
 
 void Shedding::see_voted(Identity identity, const Stamps& stamps, std::int64_t now_ns)
 {
-    if (!voted_.overload || !voted_.see(identity, stamps, now_ns)) return;
+    const bool of_input = identity.epoch == input_.newest.epoch && identity <= input_.newest;
+    if (!voted_.overload || !of_input || !voted_.see(identity, stamps, now_ns)) return;
     pace_of_voted_.see(identity);
     if (pace_of_voted_.is_shed()) voted_.overload->on_others_shed(now_ns);
     report(voted_, now_ns);
@@ -40,9 +53,12 @@ void Shedding::report(const Stream& seen, std::int64_t now_ns)
         reported_ = true;
         begin_ns_ = now_ns;
         skipped_before_ = skipped_;
+        const std::string why = &seen == &input_             ? fmt::format("frames are {:.0f} ms old", static_cast<double>(seen.age_ns) * 1e-6)
+                                : pace_of_voted_.is_shed() ? "the voters leave frames out"
+                                                           : fmt::format("voted attitudes are {:.0f} ms old", static_cast<double>(seen.age_ns) * 1e-6);
         node_.report(EventCode::overloaded, Severity::warning_high, seen.newest, 0,
-                     fmt::format("OVERLOADED: {} are {:.0f} ms old. One in {} of its {} goes out at most. Lower the rate, compose, or add processors",
-                                 &seen == &voted_ ? "voted attitudes" : "frames", static_cast<double>(seen.age_ns) * 1e-6, Pace::kept_of, outputs_));
+                     fmt::format("OVERLOADED: {}. One in {} of this service's {} goes out at most. Lower the rate, compose, or add processors", why, Pace::kept_of,
+                                 outputs_));
     } else if (reported_ && input_.keeps_up() && voted_.keeps_up()) {
         reported_ = false;
         node_.report(EventCode::overloaded, Severity::info, seen.newest, 0,

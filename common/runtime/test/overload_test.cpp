@@ -84,6 +84,19 @@ TEST_P(AnOverload, is_no_standstill_of_a_fraction_of_a_second)
     EXPECT_EQ(consumer.overload.state(), State::keeping_up);
 }
 
+TEST_P(AnOverload, is_no_pair_of_standstills_with_old_samples_between_them)
+{
+    Consumer consumer(interval_ns());
+    consumer.work_for(s, quick);
+    for (int stop = 0; stop < 3; ++stop) {
+        consumer.stand_still(300 * ms);
+        consumer.work_for(3 * quick, quick);
+    }
+    consumer.work_for(10 * s, quick);
+    EXPECT_EQ(consumer.skipped, 0U);
+    EXPECT_EQ(consumer.overload.state(), State::keeping_up);
+}
+
 TEST_P(AnOverload, is_no_slowness_of_a_fraction_of_a_second)
 {
     Consumer consumer(interval_ns());

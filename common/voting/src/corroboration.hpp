@@ -33,6 +33,9 @@ public:
     /// A frame was published: a suspicion that a majority shares holds the settle time open.
     void on_published(Identity identity, std::int64_t now_ns);
 
+    /// A detector that reported no longer ago than this speaks.
+    void keep_pace(std::int64_t silence_ns) { silence_ns_ = silence_ns; }
+
     AxisMask corroborated(std::int64_t now_ns) const;
 
     /// From the first SUSPECT until settle time.

@@ -21,12 +21,12 @@ struct Durations {
     {
     }
 
-    /// Where one in so many frames comes.
+    /// Where one in so many frames comes. A leading voter must still be heard of within its lease, so silence ends before that.
     Durations at_pace(unsigned one_in) const
     {
         Durations paced = *this;
         paced.patience_ns *= one_in;
-        paced.silence_ns *= one_in;
+        paced.silence_ns = std::max(silence_ns, std::min(silence_ns * one_in, lease_ns * 4 / 5));
         return paced;
     }
 

@@ -25,7 +25,11 @@ public:
     std::optional<Identity> new_timeline(std::int64_t now_ns) const { return newcomers_.accepted(now_ns); }
 
     /// Patience and silence are these from now on.
-    void keep_pace(const Durations& durations) { durations_ = durations; }
+    void keep_pace(const Durations& durations)
+    {
+        durations_ = durations;
+        corroboration_.keep_pace(durations.silence_ns);
+    }
 
     /// Goes over to the new timeline. @param published  nothing up to this one may be published.
     void start(Identity first, std::optional<Identity> published, std::int64_t now_ns);

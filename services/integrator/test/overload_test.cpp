@@ -8,6 +8,7 @@
 #include "quorient/runtime/shedding.hpp"
 
 #include <gtest/gtest.h>
+#include <string>
 
 namespace quorient::integrator {
 
@@ -76,6 +77,19 @@ TEST_F(AnOverloadedLane, isolates_a_fault_and_leaves_nothing_of_it_in_the_attitu
     EXPECT_EQ(rig.verdict().isolated_mask, axis_bit(1));
     EXPECT_EQ(rig.attitude().isolated_mask, axis_bit(1));
     EXPECT_LT(error_rad(), exact_rad);
+}
+
+TEST_F(AnOverloadedLane, gives_out_a_suspicion_of_one_frame_whichever_it_is)
+{
+    overload();
+    for (int onset = 0; onset < 4; ++onset) {
+        const auto suspicions = rig.suspicions();
+        const double start_s = 0.005 * static_cast<double>(rig.next_sequence() + 20 + static_cast<unsigned>(onset));
+        rig.inject("axis=1,kind=bias,value=0.05,start=" + std::to_string(start_s - 0.001) + ",end=" + std::to_string(start_s + 0.004));
+        frames(80);
+        EXPECT_GT(rig.suspicions(), suspicions) << "onset " << onset;
+        rig.heal();
+    }
 }
 
 TEST_F(AnOverloadedLane, says_when_it_begins_and_ends_and_how_much_was_left_out)

@@ -4,11 +4,11 @@
 
 namespace quorient::runtime {
 
-/// How much later samples come than the most punctual ones of the last minute. Their stamps may be of another host's clock: the difference of
+/// How much later samples come than the most punctual ones of the last half to one minute. Their stamps may be of another host's clock: the difference of
 /// the clocks and the constant part of the way drop out.
 class SampleAge {
 public:
-    /// @param epoch  of the publisher: another one may have another clock. @param stamp_ns  0 = not stamped
+    /// @param epoch  of the publisher: another one may have another clock. @param stamp_ns  0 or less = not stamped
     /// @returns 0 for a sample without a stamp.
     std::int64_t see(std::uint64_t epoch, std::int64_t stamp_ns, std::int64_t now_ns);
 

@@ -74,11 +74,12 @@ public:
         loop.after_round([this] { flush(); });
     }
 
-    void give(const Message& message)
+    /// @param news  it says something that the last one did not: it is never left out
+    void give(const Message& message, bool news = false)
     {
-        const bool left_out = shedding_.leaves_out(identity_of(message));
+        const bool left_out = !news && shedding_.leaves_out(identity_of(message));
         if (left_out) return shedding_.count_skipped();
-        if (!shedding_.active()) {
+        if (news || !shedding_.active()) {
             flush();
             return send_(message);
         }
