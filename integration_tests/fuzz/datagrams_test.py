@@ -1,4 +1,4 @@
-"""RTPS datagrams, damaged, sent to the ports of a running pipeline: nothing crashes, hangs or grows.
+"""RTPS datagrams, damaged, sent to the ports of a running pipeline, plain and encrypted: nothing crashes, hangs or grows.
 
 QUORIENT_FUZZ_DATAGRAMS: how many for each vendor (default 6000); QUORIENT_FUZZ_SEED: another run of chance.
 """
@@ -19,6 +19,7 @@ SEED = int(os.environ.get("QUORIENT_FUZZ_SEED", 1))
 HEADER = 20
 EDGES = (0, 1, 3, 0x7F, 0x80, 0xFF, 0x7FFF, 0xFFFF, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF)
 GROWTH_KB = 16 * 1024
+DEMO = CONFIGURATIONS / "demo.yaml"
 
 
 def corpus():
@@ -61,10 +62,12 @@ def resident_kb(process):
 
 
 class Datagrams(InteropTest):
-    def survives(self, vendor):
+    reader = ()  # options of a verb that reads the system's topics
+
+    def survives(self, vendor, *arguments):
         chance = random.Random(SEED)
         recorded = corpus()
-        services = self.start_services(CONFIGURATIONS / "demo.yaml", "--dds", vendor, "--set", "source.duration_s=120", "--set", "source.faults=[]", sensor=True)
+        services = self.start_services(DEMO, "--dds", vendor, "--set", "source.duration_s=120", "--set", "source.faults=[]", *arguments, sensor=True)
         self.eventually(lambda: self.newest_frame() > 200, "the pipeline runs", timeout=40)
         first = 7400 + 250 * self.domain
         ports = [port for port in range(first + 10, first + 10 + 2 * len(services) + 6)]
@@ -93,16 +96,30 @@ class Datagrams(InteropTest):
         # Nobody hangs: every service says how it is, and frames are still voted on.
         before = self.newest_frame()
         self.eventually(lambda: self.newest_frame() > before + 50, "frames are voted on after it all")
-        print(f"{vendor}: {COUNT} datagrams, seed {SEED}", file=sys.stderr)
+        print(f"{self.id()}: {COUNT} datagrams, seed {SEED}", file=sys.stderr)
+
+    def survives_encrypted(self, vendor):
+        """The datagrams are those of a node that proves nothing."""
+        keys = self.run_directory / "keys"
+        made = self.run_program("quorient", "keys", DEMO, "--out", keys, "--domain", self.domain)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.reader = ("--keys", keys, "--dds", vendor)
+        self.survives(vendor, "--set", f"security.directory={keys}", "--set", "source.rate_hz=50")
 
     def newest_frame(self):
-        return max((sample["sequence_number"] for sample in self.echo("voter_output", 66)), default=0)
+        return max((sample["sequence_number"] for sample in self.echo("voter_output", 66, *self.reader)), default=0)
 
     def test_cyclonedds_survives(self):
         self.survives("cyclonedds")
 
     def test_fastdds_survives(self):
         self.survives("fastdds")
+
+    def test_cyclonedds_survives_encrypted(self):
+        self.survives_encrypted("cyclonedds")
+
+    def test_fastdds_survives_encrypted(self):
+        self.survives_encrypted("fastdds")
 
 
 if __name__ == "__main__":
