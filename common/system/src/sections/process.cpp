@@ -62,7 +62,9 @@ Rows<ProcessSettings> process_rows()
         {all_of(&ProcessSettings::bus, bus_table().rows()), security_row(),
          value({.name = "spin", .sentence = "Ask for messages without pause in place of waiting: less latency, a whole processor."},
                &ProcessSettings::spin),
-         all_of(&ProcessSettings::node, value({.name = "stamps", .sentence = "Fill in the time of every hop, for measurements of latency."},
+         all_of(&ProcessSettings::node, value({.name = "stamps",
+                                               .sentence = "Fill in the time of every hop, for measurements of latency; the sensor's is "
+                                                           "always filled in."},
                                               &runtime::NodeSettings::stamps)),
          all_of(&ProcessSettings::realtime, record<runtime::RealtimeSettings>(realtime)),
          all_of(&ProcessSettings::realtime, value({.name = "processors",
