@@ -47,6 +47,12 @@ def parse_vote(sample, _):
     return Vote(sample["sequence_number"], (stamps[VOTER_STAMP] - stamps[SENSOR_STAMP]) / 1e3)
 
 
+def gaps(sequences):
+    """@returns how many numbers are missing between the smallest and the largest one."""
+    seen = set(sequences)
+    return max(seen) - min(seen) + 1 - len(seen)
+
+
 def processor_s(processes):
     """CPU time so far."""
     total = 0
@@ -125,8 +131,8 @@ def measure_floor(level, rate_hz, vendor):
             finally:
                 votes.stop()
         measured = votes.samples[first:last]
-        missing = MEASURED_FRAMES - len({vote.sequence for vote in measured} - {SETTLED_FRAMES})
-        return Cost(first_voted_s, sorted(vote.latency_us for vote in measured), 1e3 * (end_s - cpu_s) / MEASURED_FRAMES, max(0, missing))
+        return Cost(first_voted_s, sorted(vote.latency_us for vote in measured), 1e3 * (end_s - cpu_s) / MEASURED_FRAMES,
+                    gaps(vote.sequence for vote in measured))
     finally:
         shutil.rmtree(directory, ignore_errors=True)
 
@@ -159,7 +165,8 @@ def main():
     for _ in range(options.rounds):
         for level, who in costs:
             costs[level, who].append(measures[who](level, options.rate))
-    print("| level | | first voted frame [s] | latency p50 [us] | p99 [us] | CPU time a frame, all processes [ms] | voted frames missing |\n|---|---|---|---|---|---|---|")
+    print("| level | | first voted frame [s] | latency p50 [us] | p99 [us] | processor time a frame, all services [ms] | "
+          f"voted frames missing, of {options.rounds} runs |\n|---|---|---|---|---|---|---|")
     for (level, who), runs in costs.items():
         print(row(level, who, runs))
     print(f"\nMedians of {options.rounds} runs of each in turns, {options.rate} Hz, {os.cpu_count()} processors, {MEASURED_FRAMES} frames in each; "
