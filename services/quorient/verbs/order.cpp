@@ -19,7 +19,7 @@ constexpr std::int64_t discovery_ns = 1'200'000'000;
 // A status comes twice a second: so long another service may be found that has to hear this. A unit has one sensor publisher.
 constexpr std::int64_t all_found_ns = 600'000'000;
 
-// Members of a secured system first prove who they are: on two processors that takes a restarted one up to 2 s.
+// Members of a secured system first prove who they are, so they are found later.
 constexpr std::int64_t all_authenticated_ns = 2'000'000'000;
 
 constexpr std::int64_t repetition_ns = 100'000'000;
