@@ -4,13 +4,15 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace quorient::runtime {
 
 /// Where services leave their heartbeats: $QUORIENT_RUN_DIR, else /run/quorient.
 std::filesystem::path run_directory();
 
-/// Tells from outside DDS that a service's frames are fresh: a small file, rewritten in place.
+/// Tells from outside DDS that a service's frames are fresh: a small file, rewritten in place. Its last line is a sum of the others. So a
+/// reader notices a beat that is half written, and reads it again.
 class Heartbeat {
 public:
     /// @returns nothing where the directory cannot be made or written; the service then runs without (one warning).
@@ -23,8 +25,9 @@ public:
     void beat(std::int64_t steady_ns, std::uint64_t frames);
 
 private:
-    explicit Heartbeat(int file) : file_(file) {}
+    Heartbeat(int file, std::string text) : file_(file), text_(std::move(text)) {}
     int file_;
+    std::string text_;  ///< what the file holds; a beat allocates nothing
 };
 
 struct Beat {
