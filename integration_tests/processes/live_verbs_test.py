@@ -2,10 +2,14 @@
 import shutil
 import signal
 import subprocess
+import time
 import unittest
 
 from integration_tests.harness import exact_json
 from integration_tests.harness.processes import CONFIGURATIONS, ProcessTest
+
+
+RUNNING = 3  # code of ServiceStatus.state (common/messages)
 
 
 class LiveVerbs(ProcessTest):
@@ -50,6 +54,26 @@ class LiveVerbs(ProcessTest):
             self.assertIn(f"{detector}: readmits G3", readmitted.stdout, readmitted.stderr)
         self.assertEqual(readmitted.returncode, 1 if "fdi-c: has not isolated" in readmitted.stdout else 0)
         self.eventually(lambda: self.echo("voter_output", 1)[0]["isolated_mask"] == 0, "axis 2 trusted again")
+
+    def test_health_and_status_of_a_healthy_unit_read_without_pause_never_show_another_state(self):
+        self.eventually(lambda: "GOOD" in self.run_program("quorient", "status", "--domain", self.domain).stdout, "the attitude is good")
+        end_s = time.monotonic() + 4
+        while time.monotonic() < end_s:
+            for name in ("voter-1", "fdi-b", "sensor"):
+                health = self.run_program("quorient", "health", name)
+                self.assertEqual(health.returncode, 0, health.stdout + health.stderr)
+        watch = self.start("quorient", "status", "--domain", self.domain, "--watch", "--seconds", 0.05, "--json")
+        time.sleep(4)  # about eight statuses of each service, each shown about ten times
+        watch.terminate()
+        shown = [exact_json.loads(line) for line in watch.communicate(timeout=10)[0].splitlines()]
+        self.assertGreater(len(shown), 40)
+        for seconds in (0.1, 0.3, 0.6, 1):
+            result = self.run_program("quorient", "status", "--domain", self.domain, "--seconds", seconds, "--json")
+            shown.append(exact_json.loads(result.stdout))
+        for state in shown:
+            self.assertEqual(state["starving"], [])
+            self.assertRegex(state["standing"]["text"], "^(GOOD|NOTHING)")
+            self.assertLessEqual({service["state"] for service in state["services"]}, {RUNNING})
 
     def test_orders_for_axes_that_there_are_not_name_those_that_there_are(self):
         for order in (("inject", "axis=G9,kind=zero"), ("inject", "instrument=G9,kind=zero"), ("readmit", "--axis", "G9")):

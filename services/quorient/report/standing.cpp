@@ -85,6 +85,8 @@ std::string attitude_text(const Standing& standing, std::int64_t now_ns)
 
 std::string standing_text(const Standing& standing, std::int64_t now_ns)
 {
+    if (!standing.voted && !standing.voters.empty() && !standing.output_is_due)
+        return "NOTHING YET: voters run, and their output has not been received so far; listen for longer";
     if (!standing.voted && standing.verdicts.empty()) return "NOTHING: no voter and no detector sends anything";
     const auto head = standing.voted              ? attitude_text(standing, now_ns)
                       : !standing.voters.empty() ? std::string("BAD: no voter owns the output")

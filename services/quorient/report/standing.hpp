@@ -16,6 +16,7 @@ namespace quorient::report {
 struct Standing {
     std::optional<ClusterDescription> description;
     std::optional<VotedAttitude> voted;             ///< from whoever owns the output; absent where no voter owns it
+    bool output_is_due = true;                      ///< voters have been received for so long that the absence of `voted` means something
     std::map<std::uint32_t, FaultVerdict> verdicts;  ///< by detector, whose number is also that of its lane
     std::map<std::uint32_t, std::string> voters;    ///< names by number
     std::map<std::uint32_t, std::string> lanes;     ///< likewise

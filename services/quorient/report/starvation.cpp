@@ -41,14 +41,25 @@ bool gives_one_per_frame(const ServiceStatus& status)
     return role == ServiceRole::detector || role == ServiceRole::integrator || role == ServiceRole::voter;
 }
 
-double reference_hz(std::span<const Interval> services)
+/// The sensor; without one, the quickest service. Null where nothing is measured.
+const Interval* reference(std::span<const Interval> services)
 {
-    double quickest_hz = 0;
+    const Interval* quickest = nullptr;
     for (const auto& service : services) {
-        if (role_of(service.latest) == ServiceRole::sensor && service.rate_hz() > 0) return service.rate_hz();
-        if (gives_one_per_frame(service.latest)) quickest_hz = std::max(quickest_hz, service.rate_hz());
+        if (service.rate_hz() <= 0) continue;
+        if (role_of(service.latest) == ServiceRole::sensor) return &service;
+        if (gives_one_per_frame(service.latest) && (!quickest || service.rate_hz() > quickest->rate_hz())) quickest = &service;
     }
-    return quickest_hz;
+    return quickest;
+}
+
+/// Either count may be of one frame more or less than the other, which matters where few frames passed.
+bool falls_short(const Interval& service, const Interval& sensor)
+{
+    const double due = sensor.rate_hz() * service.elapsed_s();
+    const double counted_s = std::min(service.elapsed_s(), sensor.elapsed_s());
+    const double uncertain = 1 + service.elapsed_s() / counted_s;
+    return service.rate_hz() * service.elapsed_s() < std::min(enough * due, due - uncertain);
 }
 
 }  // namespace
@@ -61,18 +72,23 @@ bool Interval::is_measured() const
 double Interval::rate_hz() const
 {
     if (!is_measured()) return 0;
-    const double elapsed_s = static_cast<double>(latest.wall_time_ns - first.wall_time_ns) * 1e-9;
-    return static_cast<double>(latest.published - first.published) / elapsed_s;
+    return static_cast<double>(latest.published - first.published) / elapsed_s();
+}
+
+double Interval::elapsed_s() const
+{
+    return static_cast<double>(latest.wall_time_ns - first.wall_time_ns) * 1e-9;
 }
 
 std::vector<Starving> find_starving(std::span<const Interval> services, std::span<const HealthEvent> events)
 {
     std::vector<Starving> found;
-    const double sensor_hz = reference_hz(services);
+    const auto* sensor = reference(services);
+    if (!sensor) return found;
     for (const auto& service : services) {
         if (!gives_one_per_frame(service.latest) || state_of(service.latest) != ServiceState::running) continue;
-        if (!gave_before(service) || !service.is_measured() || service.rate_hz() >= enough * sensor_hz) continue;
-        found.push_back({std::string{text_of(service.latest.name)}, service.rate_hz(), sensor_hz,
+        if (!gave_before(service) || !service.is_measured() || !falls_short(service, *sensor)) continue;
+        found.push_back({std::string{text_of(service.latest.name)}, service.rate_hz(), sensor->rate_hz(),
                          is_shedding(service.latest.service, events)});
     }
     return found;

@@ -17,6 +17,7 @@ struct Interval {
 
     bool is_measured() const;  ///< time passed, in one process
     double rate_hz() const;    ///< samples published; 0 where it is not measured
+    double elapsed_s() const;
 };
 
 /// A service that does not give out what the sensor gives in.
@@ -27,8 +28,9 @@ struct Starving {
     bool sheds = false;  ///< by its own decision
 };
 
-/// The detectors, integrators and voters that published less than 95 % as many samples as the sensor sent frames. Where no sensor answers,
-/// the quickest service stands in for it. One that had published nothing at the first status has only begun, and is not judged.
+/// The detectors, integrators and voters that published less than 95 % as many samples as the sensor sent frames, and lack more frames than
+/// two counts of different moments may differ by. Where no sensor answers, the quickest service stands in for it. One that had published
+/// nothing at the first status has only begun, and is not judged.
 /// @param events  of these services; OVERLOADED says which of them leave frames out
 std::vector<Starving> find_starving(std::span<const Interval> services, std::span<const HealthEvent> events);
 

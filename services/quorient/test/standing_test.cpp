@@ -73,6 +73,15 @@ TEST(Standing, is_not_good_where_no_majority_vouches)
     EXPECT_TRUE(standing_text(standing, now_ns).starts_with("BAD: no voter owns the output;"));
 }
 
+TEST(Standing, is_not_bad_before_the_output_could_be_received)
+{
+    auto standing = healthy();
+    standing.voted.reset();
+    standing.output_is_due = false;
+    EXPECT_TRUE(standing_text(standing, now_ns).starts_with("NOTHING YET: voters run"));
+    EXPECT_TRUE(standing_json(standing, now_ns)["good"].is_null());
+}
+
 TEST(Standing, of_a_unit_without_voters_is_that_of_its_detectors)
 {
     auto standing = healthy();

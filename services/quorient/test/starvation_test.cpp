@@ -46,6 +46,18 @@ TEST(Starvation, names_the_service_that_gives_out_fewer_frames_than_the_sensor_s
         << starving_text(starving);
 }
 
+TEST(Starvation, is_not_said_of_a_frame_that_only_one_of_two_counts_has)
+{
+    auto sensor = service("sensor", 101, ServiceRole::sensor, 0);
+    auto detector = service("fdi-a", 111, ServiceRole::detector, 0);
+    for (auto* each : {&sensor, &detector}) each->latest.wall_time_ns = second_ns / 2;
+    sensor.latest.published = sensor.first.published + 11;
+    detector.latest.published = detector.first.published + 9;
+    EXPECT_TRUE(find_starving(std::vector{sensor, detector}, {}).empty());
+    detector.latest.published = detector.first.published + 8;
+    EXPECT_EQ(find_starving(std::vector{sensor, detector}, {}).size(), 1U);
+}
+
 TEST(Starvation, is_judged_by_the_quickest_service_where_no_sensor_answers)
 {
     const std::vector services{service("fdi-a", 111, ServiceRole::detector, 200), service("fdi-b", 113, ServiceRole::detector, 100)};

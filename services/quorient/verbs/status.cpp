@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace quorient::cli {
@@ -37,7 +38,9 @@ struct StatusOptions {
 
 /// Status comes twice a second: two samples of a service give its rate.
 struct Heard : report::Interval {
-    std::int64_t heard_ns = 0;  ///< steady
+    std::int64_t first_heard_ns = 0;  ///< steady
+    std::int64_t heard_ns = 0;
+    bool begins_next = false;  ///< with the next status a new interval begins; until then the last one stands
 };
 
 using Services = std::map<std::uint32_t, Heard>;
@@ -73,10 +76,10 @@ void print_services(const Services& services)
                "rate/Hz", "p50/us", "p99/us", "gaps", "late", "foreign", "rejected");
     for (const auto& [id, heard] : services) {
         const auto& status = heard.latest;
-        fmt::print("{:<14}{:<12}{:<10}{:<12}{:<10}{:>9.1f}{:>11.0f}{:>11.0f}{:>8}{:>8}{:>9}{:>10}\n", text_of(status.name),
+        fmt::print("{:<14}{:<12}{:<10}{:<12}{:<10}{:>9}{:>11.0f}{:>11.0f}{:>8}{:>8}{:>9}{:>10}\n", text_of(status.name),
                    to_string(role_of(status)), to_string(state_of(status)),
                    bus::to_string(vendor_of(status)), bus::to_string(transport_of(status)),
-                   heard.rate_hz(), status.latency_s[0] * 1e6, status.latency_s[2] * 1e6, status.gaps, status.late, status.foreign,
+                   heard.is_measured() ? fmt::format("{:.1f}", heard.rate_hz()) : "-", status.latency_s[0] * 1e6, status.latency_s[2] * 1e6, status.gaps, status.late, status.foreign,
                    status.rejected);
     }
 }
@@ -97,6 +100,8 @@ void print_events(std::vector<HealthEvent> events, std::size_t most)
 /// What is received of one unit. Watched for long, it forgets who has fallen silent.
 struct Received {
     static constexpr std::int64_t silence_ns = 2'000'000'000;
+    /// A voter's output may be discovered so much later than its status.
+    static constexpr std::int64_t discovery_ns = 1'000'000'000;
     static constexpr std::size_t most_events = 2000;
 
     Services services;
@@ -113,7 +118,8 @@ struct Received {
             });
         };
         take(bus::topics::status, [this, now](const ServiceStatus& sample) {
-            auto& its = services.try_emplace(sample.service, Heard{{sample, sample}}).first->second;
+            auto& its = services.try_emplace(sample.service, Heard{{sample, sample}, now()}).first->second;
+            if (std::exchange(its.begins_next, false)) its.first = its.latest;
             its.latest = sample;
             its.heard_ns = now();
         });
@@ -137,9 +143,17 @@ struct Received {
     {
         const auto is_silent = [now_ns](std::int64_t heard_ns) { return now_ns - heard_ns > silence_ns; };
         std::erase_if(services, [&](const auto& entry) { return is_silent(entry.second.heard_ns); });
-        for (auto& [id, heard] : services) heard.first = heard.latest;
+        for (auto& [id, heard] : services) heard.begins_next = true;
         if (standing.voted && is_silent(voted_ns)) standing.voted.reset();
         std::erase_if(standing.verdicts, [&](const auto& entry) { return is_silent(verdict_ns[entry.first]); });
+    }
+
+    /// Whether a voter has been received for so long that its output would have been, too.
+    bool output_is_due(std::int64_t now_ns) const
+    {
+        return std::ranges::any_of(services, [now_ns](const auto& entry) {
+            return role_of(entry.second.latest) == ServiceRole::voter && now_ns - entry.second.first_heard_ns >= discovery_ns;
+        });
     }
 
     std::int64_t voted_ns = 0;
@@ -180,6 +194,7 @@ int status(const StatusOptions& options)
     received.subscribe(*bus, loop, options.bus.unit);
     const auto show = [&] {
         name_services(received.services, received.standing);
+        received.standing.output_is_due = received.output_is_due(clock.steady_ns());
         find_level_since(received.events, options.bus.unit, received.standing);
         if (options.watch && ::isatty(STDOUT_FILENO) == 1) fmt::print("\033[H\033[J");
         print(received, options, clock.wall_ns());
