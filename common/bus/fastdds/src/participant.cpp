@@ -7,12 +7,13 @@
 #include "security.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/dds/log/StdoutErrConsumer.hpp>
+#include <limits>
 #include <memory>
 #include <mutex>
+#include <random>
 
 namespace quorient::bus::fastdds {
 
@@ -32,11 +33,13 @@ void add_peer(const std::string& address, const Settings& settings, wire::Locato
     }
 }
 
+constexpr const char* discovery_group = "239.255.0.1";
+
 /// Multicast discovery continues beside the list.
 void add_multicast(std::uint32_t domain, wire::LocatorList_t& peers)
 {
     wire::Locator_t locator;
-    wire::IPLocator::setIPv4(locator, "239.255.0.1");
+    wire::IPLocator::setIPv4(locator, discovery_group);
     locator.port = 7400 + 250 * domain;
     peers.push_back(locator);
 }
@@ -53,12 +56,31 @@ void announce_in_order(dds::WireProtocolConfigQos& wire)
     }
 }
 
+/// The ports in shared memory, other ones in each life of a process. Fast DDS derives them from the domain and the participant's number, so a
+/// process that is started again would have those of the one that was killed. Its peers go on sending into the memory of the killed one, until
+/// they notice. Where it was killed while it received, they never do (integration_tests/results/kill_matrix.md).
+/// UDP's addresses are those that Fast DDS would choose if no list were stated: it fills in the ports, and all addresses of the interface.
+void announce_fresh_memory(dds::WireProtocolConfigQos& wire)
+{
+    constexpr std::uint32_t above_all_udp_ports = 1U << 16;
+    std::random_device entropy;
+    std::uniform_int_distribution<std::uint32_t> port{above_all_udp_ports, std::numeric_limits<std::int32_t>::max()};
+    const std::unique_ptr<rtps::TransportInterface> memory{rtps::SharedMemTransportDescriptor{}.create_transport()};
+    wire::Locator_t multicast;
+    wire::IPLocator::setIPv4(multicast, discovery_group);
+    wire.builtin.metatrafficMulticastLocatorList.push_back(multicast);
+    wire.builtin.metatrafficUnicastLocatorList.push_back(wire::Locator_t{});
+    wire.default_unicast_locator_list.push_back(wire::Locator_t{});
+    memory->getDefaultMetatrafficUnicastLocators(wire.builtin.metatrafficUnicastLocatorList, port(entropy));
+    memory->getDefaultUnicastLocators(wire.default_unicast_locator_list, port(entropy));
+}
+
 /// One second, and a little more, different from process to process. Each announcement goes to all ports of all peers, so processes that
-/// start together would otherwise all announce at the same moment.
+/// start together would otherwise all announce at the same moment. In containers process ids are the same.
 double announcement_period_s()
 {
-    constexpr int paces = 64;
-    return 1 + 0.25 * (getpid() % paces) / paces;
+    std::random_device entropy;
+    return std::uniform_real_distribution<double>{1, 1.25}(entropy);
 }
 
 /// Linux's default, which must be stated here: behind another transport Fast DDS 2.9.1 reads an unstated size as 0, assumes a full buffer
@@ -129,7 +151,8 @@ dds::DomainParticipant* join(const Settings& settings, Peers& peers)
     builtin.discovery_config.initial_announcements.period = seconds(0.02);
     builtin.discovery_config.leaseDuration_announcementperiod = seconds(announcement_period_s());
     builtin.discovery_config.leaseDuration = seconds(10);
-    if (settings.interface.empty() && !settings.peers.empty() && !shares_memory(settings)) announce_in_order(qos.wire_protocol());
+    if (shares_memory(settings)) announce_fresh_memory(qos.wire_protocol());
+    else if (settings.interface.empty() && !settings.peers.empty()) announce_in_order(qos.wire_protocol());
     for (const auto& peer : settings.peers) add_peer(peer, settings, builtin.initialPeersList);
     if (settings.peers.empty()) {
         for (const auto& own : addresses_of(settings.interface)) add_peer(own, settings, builtin.initialPeersList);
