@@ -20,6 +20,7 @@ FAST_DDS = ("fastrtps_", "sem.fastrtps_", "fastdds_", "sem.fastdds_", "fast_data
 ROUDI = shutil.which("iox-roudi")
 ROUDI_SOCKET = "/tmp/roudi"
 MAY_MOUNT = os.geteuid() == 0 and shutil.which("unshare")
+OWN_PROCESS_IDS = ("unshare", "--pid", "--fork", "--mount-proc", "--kill-child")  # a container's
 LANES = (
     "lanes=[{name: a, detector: {method: vector}, transport: iceoryx},"
     "{name: b, dds: fastdds, detector: {method: vector}, transport: shm},"
@@ -69,11 +70,11 @@ class SharedMemory(ProcessTest):
         while roudi_answers() and time.monotonic() < deadline:  # the launcher's children go with it
             time.sleep(0.02)
 
-    def start_roudi(self, *pools):
-        """@param pools  (size, count) of each; without, those that RouDi has by itself."""
+    def start_roudi(self, *pools, within=()):
+        """@param pools  (size, count) of each; without, those that RouDi has by itself. @param within  a command that runs another one."""
         configuration = "".join(f"[[segment.mempool]]\nsize = {size}\ncount = {count}\n" for size, count in pools)
         file = self.write("own-roudi.toml", "[general]\nversion = 1\n[[segment]]\n" + configuration)
-        process = subprocess.Popen([ROUDI, *(["-c", file] if pools else [])], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        process = subprocess.Popen([*within, ROUDI, *(["-c", file] if pools else [])], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.processes.append(process)
         self.eventually(roudi_answers, "iox-roudi answers")
         return process
@@ -258,6 +259,19 @@ class SharedMemory(ProcessTest):
         refused = subprocess.run(as_nobody, env=self.environment, capture_output=True, text=True, timeout=30)
         self.assertNotEqual(refused.returncode, 0)
         self.assertRegex(refused.stderr, "belongs to root|may not open the memory")
+
+    @unittest.skipUnless(MAY_MOUNT, "another namespace needs root")
+    def test_a_daemon_in_another_namespace_of_process_ids_is_refused(self):
+        for daemon, process in (((), OWN_PROCESS_IDS), (OWN_PROCESS_IDS, ()), (OWN_PROCESS_IDS, OWN_PROCESS_IDS)):
+            with self.subTest(daemon=daemon, process=process):
+                roudi = self.start_roudi(within=daemon)
+                refused = subprocess.run([*process, *self.command(*BY_ICEORYX, "--domain", self.domain)], env=self.environment, capture_output=True,
+                                         text=True, timeout=30)
+                roudi.kill()
+                roudi.wait()
+                self.eventually(lambda: not roudi_answers(), "the daemon is gone")
+                self.assertNotEqual(refused.returncode, 0)
+                self.assertIn("another namespace of process ids", refused.stderr)
 
     def test_pools_that_are_too_small_are_reported_with_the_size_needed(self):
         self.start_roudi((512, 1000))
