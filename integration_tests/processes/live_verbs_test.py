@@ -65,7 +65,7 @@ class LiveVerbs(ProcessTest):
         watch = self.start("quorient", "status", "--domain", self.domain, "--watch", "--seconds", 0.05, "--json")
         time.sleep(4)  # about eight statuses of each service, each shown about ten times
         watch.terminate()
-        shown = [exact_json.loads(line) for line in watch.communicate(timeout=10)[0].splitlines()]
+        shown = [exact_json.loads(line) for line in watch.communicate(timeout=10)[0].splitlines() if line.startswith("{")]
         self.assertGreater(len(shown), 40)
         for seconds in (0.1, 0.3, 0.6, 1):
             result = self.run_program("quorient", "status", "--domain", self.domain, "--seconds", seconds, "--json")
