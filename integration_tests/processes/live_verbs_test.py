@@ -62,10 +62,15 @@ class LiveVerbs(ProcessTest):
             for name in ("voter-1", "fdi-b", "sensor"):
                 health = self.run_program("quorient", "health", name)
                 self.assertEqual(health.returncode, 0, health.stdout + health.stderr)
-        watch = self.start("quorient", "status", "--domain", self.domain, "--watch", "--seconds", 0.05, "--json")
+        shown_file = self.run_directory / "shown.json"
+        with open(shown_file, "w") as shown_states:
+            watch = subprocess.Popen(self.command("quorient", "status", "--domain", self.domain, "--watch", "--seconds", 0.05, "--json"),
+                                     env=self.environment, stdout=shown_states, stderr=subprocess.DEVNULL)
+        self.processes.append(watch)
         time.sleep(4)  # about eight statuses of each service, each shown about ten times
         watch.terminate()
-        shown = [exact_json.loads(line) for line in watch.communicate(timeout=10)[0].splitlines() if line.startswith("{")]
+        watch.wait(timeout=10)
+        shown = [exact_json.loads(line) for line in shown_file.read_text().splitlines()]
         self.assertGreater(len(shown), 40)
         for seconds in (0.1, 0.3, 0.6, 1):
             result = self.run_program("quorient", "status", "--domain", self.domain, "--seconds", seconds, "--json")

@@ -66,6 +66,7 @@ void announce_fresh_memory(dds::WireProtocolConfigQos& wire)
     std::random_device entropy;
     std::uniform_int_distribution<std::uint32_t> port{above_all_udp_ports, std::numeric_limits<std::int32_t>::max()};
     const std::unique_ptr<rtps::TransportInterface> memory{rtps::SharedMemTransportDescriptor{}.create_transport()};
+    if (!memory->init()) return;  // then Fast DDS finds no shared memory either, and must not announce any
     wire::Locator_t multicast;
     wire::IPLocator::setIPv4(multicast, discovery_group);
     wire.builtin.metatrafficMulticastLocatorList.push_back(multicast);
