@@ -13,7 +13,8 @@ include(GoogleTest)
 
 find_program(CCACHE ccache)
 if(CCACHE)
-  # What ccache's manual asks for where headers are precompiled. CCACHE_BASEDIR lets two checkouts share their results.
+  # What ccache's manual asks for where headers are precompiled. CCACHE_BASEDIR lets two checkouts share their
+  # results, but not those of sources compiled as one, which name their files by full paths.
   set(launcher ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
       CCACHE_PCH_EXTSUM=1 ${CCACHE})
   set(CMAKE_C_COMPILER_LAUNCHER ${launcher})
@@ -105,7 +106,7 @@ if(QUORIENT_TESTS)
   endif()
 endif()
 
-# Sources of a room are compiled several at a time, since most of a compiler's work is in the headers: that halves the first build. So a name in an
+# Sources of a room are compiled several at a time, since headers and templates are then compiled once for all of them (deploy/README.md has times). So a name in an
 # anonymous namespace occurs once in a room. While you change sources, -DQUORIENT_UNITY=OFF compiles only those (the dev preset has it).
 option(QUORIENT_UNITY "Compile several sources of a room as one" ON)
 

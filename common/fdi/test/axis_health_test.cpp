@@ -1,5 +1,6 @@
 #include "verdict/axis_health.hpp"
 
+#include "measured_frame.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
 #include "quorient/geometry/layouts.hpp"
 
@@ -264,14 +265,8 @@ TEST_F(AxisHealthTest, what_is_broken_is_isolated_by_the_monitor_without_any_par
     std::uint64_t isolated_at = never;
     AxisMask isolated = 0;
     for (unsigned frame = 0; frame < 600; ++frame) {
-        SensorFrame message;
-        message.epoch = 1;
-        message.sequence = frame;
-        message.interval_s = interval_s;
-        message.axis_count = 6;
-        message.valid_mask = 0b111111;
-        const geometry::AxisVector z = cluster_.axes * wild(frame) * interval_s;
-        for (std::size_t axis = 0; axis < 6; ++axis) message.increment[axis] = z(static_cast<Eigen::Index>(axis)) + noise_(random_);
+        const geometry::AxisVector exact = cluster_.axes * wild(frame) * interval_s;
+        auto message = measured_frame(frame, interval_s, exact, [this](std::size_t, double increment) { return increment + noise_(random_); });
         if (frame >= 300) message.increment[2] = range_rad_s * interval_s;
         isolated = monitor.assess(message).isolated_mask;
         if (isolated != 0) isolated_at = std::min<std::uint64_t>(isolated_at, frame);

@@ -3,7 +3,7 @@
 #include "coning_model.hpp"
 #include "four_axes/extrapolation_detector.hpp"
 #include "four_axes/vector_detector.hpp"
-#include "four_axis_scene.hpp"
+#include "measured_frame.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
 #include "quorient/messages/meaning.hpp"
 
@@ -76,7 +76,7 @@ public:
     {
         const Eigen::Vector4d exact =
             cluster_.axes * motion_.increment(scenario.begin_s + interval_s * static_cast<double>(sequence), interval_s);
-        return four_axis_frame(sequence, interval_s, exact, [&](std::size_t axis, double increment) {
+        return measured_frame(sequence, interval_s, exact, [&](std::size_t axis, double increment) {
             const bool faulty = axis == scenario.faulty && sequence >= scenario.from && sequence < scenario.until;
             return quantise_(axis, increment * (faulty ? 0.8 : 1.0));
         });

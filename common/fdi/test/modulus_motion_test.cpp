@@ -1,6 +1,6 @@
 // The paper's predictor takes the modulus for a sum of two exponentials. A vehicle's motion is none.
 
-#include "four_axis_scene.hpp"
+#include "measured_frame.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
 
 #include <gtest/gtest.h>
@@ -72,7 +72,7 @@ Count play(double scale, std::uint64_t passing = 0)
         AxisMask isolated = 0;
         for (std::uint64_t sequence = 0; sequence < onset + 400 && isolated == 0; ++sequence) {
             const Eigen::Vector4d exact = cluster.axes * motion.increment(interval_s * static_cast<double>(sequence), interval_s);
-            const SensorFrame frame = four_axis_frame(sequence, interval_s, exact, [&](std::size_t axis, double increment) {
+            const SensorFrame frame = measured_frame(sequence, interval_s, exact, [&](std::size_t axis, double increment) {
                 double measured = increment * (axis == faulty && sequence >= onset ? scale : 1);
                 if (axis == (faulty + 1) % 4 && sequence + 28 < onset && sequence + 28 + passing >= onset) measured += 1e-3;
                 return std::trunc(measured / quantum) * quantum;

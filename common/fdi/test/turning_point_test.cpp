@@ -1,7 +1,7 @@
 // Four axes: an axis whose rate turns round repeats its value for many frames. That alone must not make it stuck while another axis is faulty.
 
 #include "coning_model.hpp"
-#include "four_axis_scene.hpp"
+#include "measured_frame.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ AxisMask isolated(const Run& run, const Fault& fault)
     AxisMask isolated = 0;
     for (std::uint64_t sequence = 0; sequence < onset + 300; ++sequence) {
         const Eigen::Vector4d exact = cluster.axes * motion.increment(run.begin_s + interval_s * static_cast<double>(sequence), interval_s);
-        const SensorFrame frame = four_axis_frame(sequence, interval_s, exact, [&](std::size_t axis, double increment) {
+        const SensorFrame frame = measured_frame(sequence, interval_s, exact, [&](std::size_t axis, double increment) {
             const double sound = quantise(axis, increment);
             return axis == run.faulty ? fault(sequence, sound) : sound;
         });

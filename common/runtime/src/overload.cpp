@@ -1,5 +1,7 @@
 #include "quorient/runtime/overload.hpp"
 
+#include "quorient/runtime/pace.hpp"
+
 #include <algorithm>
 
 namespace quorient::runtime {
@@ -8,6 +10,9 @@ namespace {
 
 constexpr double old_intervals = 10;
 constexpr double old_at_least_s = 0.01;
+
+/// Kept frames must come at least twice in a lease of `voted`, which is 50 ms or more.
+constexpr double longest_kept_interval_s = 0.025;
 
 /// Samples that are old for more than a seventeenth of the time add up.
 constexpr std::int64_t forgiveness = 16;
@@ -18,7 +23,7 @@ constexpr std::int64_t relapse_ns = 10'000'000;
 /// In a trial the others begin at the same stamp, but their samples are on the way.
 constexpr std::int64_t grace_ns = 1'000'000'000;
 
-/// Whoever has only begun to shed has a queue to work off first.
+/// A service that begins to shed still has a queue to work off.
 constexpr std::int64_t shed_at_least_ns = 1'000'000'000;
 
 }  // namespace
@@ -41,7 +46,11 @@ std::int64_t SampleAge::see(std::uint64_t epoch, std::int64_t stamp_ns, std::int
     return way_ns - std::min(least_ns_, least_before_ns_);
 }
 
-Overload::Overload(double interval_s) : bound_ns_(static_cast<std::int64_t>(std::max(old_intervals * interval_s, old_at_least_s) * 1e9)) {}
+Overload::Overload(double interval_s)
+    : bound_ns_(static_cast<std::int64_t>(std::max(old_intervals * interval_s, old_at_least_s) * 1e9)),
+      may_shed_(Pace::kept_of * interval_s <= longest_kept_interval_s)
+{
+}
 
 void Overload::measure(bool old, std::int64_t now_ns)
 {
@@ -69,6 +78,7 @@ void Overload::fail(std::int64_t now_ns)
 
 Overload::State Overload::on_others_shed(std::int64_t now_ns)
 {
+    if (!may_shed_) return state_;
     if (state_ == State::trying && now_ns - since_ns_ >= grace_ns) fail(now_ns);
     else if (state_ == State::keeping_up || state_ == State::falling_behind) enter(State::shedding, now_ns);
     return state_;
@@ -76,6 +86,7 @@ Overload::State Overload::on_others_shed(std::int64_t now_ns)
 
 Overload::State Overload::on_sample(std::int64_t age_ns, std::int64_t stamp_ns, std::int64_t now_ns)
 {
+    if (!may_shed_) return state_;
     const bool old = age_ns > bound_ns_;
     const bool passes_period = stamp_ns / period_ns_ != last_stamp_ns_ / period_ns_;
     last_stamp_ns_ = stamp_ns;

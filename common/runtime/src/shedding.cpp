@@ -11,9 +11,6 @@ namespace {
 /// A queue holds fewer frames. Whoever is further behind the newest one shows that that one was wrong.
 constexpr std::uint64_t longest_queue = 1000;
 
-/// Kept frames must come at least twice in a lease of `voted`, which is 50 ms or more.
-constexpr double longest_kept_interval_s = 0.025;
-
 }  // namespace
 
 /// @returns false for a frame that is not newer
@@ -30,7 +27,6 @@ bool Shedding::Stream::see(Identity identity, const Stamps& stamps, std::int64_t
 
 void Shedding::see(Identity identity, const Stamps& stamps, double interval_s, std::int64_t now_ns)
 {
-    if (Pace::kept_of * interval_s > longest_kept_interval_s) return;
     if (!input_.overload) {
         input_.overload.emplace(interval_s);
         voted_.overload.emplace(interval_s);

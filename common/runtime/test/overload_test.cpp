@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <set>
 #include <string_view>
 
@@ -67,6 +68,14 @@ public:
 
 constexpr std::int64_t quick = 100'000;  // a tenth of an interval at 1 kHz
 
+/// And has left nothing out.
+void expect_that_it_keeps_up(Consumer& consumer)
+{
+    consumer.work_for(10 * s, quick);
+    EXPECT_EQ(consumer.skipped, 0U);
+    EXPECT_EQ(consumer.overload.state(), State::keeping_up);
+}
+
 class AnOverload : public testing::TestWithParam<std::int64_t> {
 protected:
     std::int64_t interval_ns() const { return GetParam(); }
@@ -79,9 +88,7 @@ TEST_P(AnOverload, is_no_standstill_of_a_fraction_of_a_second)
         consumer.work_for(stop % 2 == 0 ? s : 100 * ms, quick);
         consumer.stand_still(300 * ms);
     }
-    consumer.work_for(s, quick);
-    EXPECT_EQ(consumer.skipped, 0U);
-    EXPECT_EQ(consumer.overload.state(), State::keeping_up);
+    expect_that_it_keeps_up(consumer);
 }
 
 TEST_P(AnOverload, is_no_pair_of_standstills_with_old_samples_between_them)
@@ -92,9 +99,7 @@ TEST_P(AnOverload, is_no_pair_of_standstills_with_old_samples_between_them)
         consumer.stand_still(300 * ms);
         consumer.work_for(3 * quick, quick);
     }
-    consumer.work_for(10 * s, quick);
-    EXPECT_EQ(consumer.skipped, 0U);
-    EXPECT_EQ(consumer.overload.state(), State::keeping_up);
+    expect_that_it_keeps_up(consumer);
 }
 
 TEST_P(AnOverload, is_no_slowness_of_a_fraction_of_a_second)
@@ -102,9 +107,7 @@ TEST_P(AnOverload, is_no_slowness_of_a_fraction_of_a_second)
     Consumer consumer(interval_ns());
     consumer.work_for(s, quick);
     consumer.work_for(400 * ms, interval_ns() * 3 / 2);
-    consumer.work_for(10 * s, quick);
-    EXPECT_EQ(consumer.skipped, 0U);
-    EXPECT_EQ(consumer.overload.state(), State::keeping_up);
+    expect_that_it_keeps_up(consumer);
 }
 
 TEST_P(AnOverload, that_lasts_bounds_the_age_of_what_is_given_out)
@@ -182,6 +185,23 @@ TEST_P(AnOverload, changes_its_state_as_drawn)
 }
 
 INSTANTIATE_TEST_SUITE_P(At, AnOverload, testing::Values(5 * ms, ms), [](const auto& interval) { return interval.param == ms ? "1_kHz" : "200_Hz"; });
+
+TEST(AnOverloadAtASlowRate, leaves_nothing_out_since_kept_frames_would_be_too_far_apart)
+{
+    Consumer consumer(10 * ms);
+    consumer.work_for(s, quick);
+    consumer.work_for(20 * s, 15 * ms);
+    EXPECT_EQ(consumer.skipped, 0U);
+    EXPECT_EQ(consumer.overload.on_others_shed(consumer.now), State::keeping_up);
+}
+
+TEST(SampleAge, is_0_where_a_stamp_cannot_be)
+{
+    SampleAge age;
+    EXPECT_EQ(age.see(1, 1000 * ms, 1003 * ms), 0);
+    EXPECT_EQ(age.see(1, std::numeric_limits<std::int64_t>::min(), 1008 * ms), 0);
+    EXPECT_EQ(age.see(1, 1010 * ms, 1015 * ms), 2 * ms);
+}
 
 TEST(SampleAge, is_that_beyond_the_most_punctual_sample)
 {

@@ -90,6 +90,17 @@ TEST(APacedVoter, still_finds_that_a_lane_is_silent)
     EXPECT_EQ(paced.scene.last().level, octet(VoteLevel::degraded));
 }
 
+/// Readers of `voted` take another voter as soon as its lease has passed in silence.
+TEST(APacedVoter, that_has_no_frames_coasts_before_its_lease_ends)
+{
+    Paced paced;
+    paced.scene.until(Scene::time_of(99) + 38 * ms);
+    EXPECT_TRUE(paced.scene.outputs.empty());
+    paced.scene.until(Scene::time_of(99) + 48 * ms);
+    ASSERT_FALSE(paced.scene.outputs.empty());
+    EXPECT_EQ(paced.scene.last().level, octet(VoteLevel::coasting));
+}
+
 TEST(APacedVoter, gives_out_every_frame_again_once_all_of_them_come)
 {
     Paced paced;

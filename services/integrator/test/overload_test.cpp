@@ -22,6 +22,26 @@ protected:
     void frames(unsigned count) { rig.frames(count, detector, integrator); }
     double error_rad() const { return rotation::angle_between(rig.attitude().attitude, rig.truth().attitude); }
 
+    /// A voter's output. @param ahead  so many frames ahead of the newest one
+    void vote(std::int64_t age_ns, std::uint64_t ahead = 0)
+    {
+        VotedAttitude voted;
+        voted.unit = rig.system.unit;
+        voted.epoch = test::Rig::first_epoch;
+        voted.sequence = rig.next_sequence() - 1 + ahead;
+        voted.attitude = rig.attitude().attitude;
+        voted.stamp_ns[static_cast<std::size_t>(Hop::sensor)] = rig.now_ns() - age_ns;
+        rig.publish(bus::topics::voter_output, voted);
+    }
+
+    void vote_for(unsigned count, std::int64_t age_ns)
+    {
+        for (unsigned i = 0; i < count; ++i) {
+            frames(1);
+            vote(age_ns);
+        }
+    }
+
     /// Frames come late for so long that it is no standstill any more.
     void overload()
     {
@@ -116,26 +136,22 @@ TEST_F(AnOverloadedLane, says_when_it_begins_and_ends_and_how_much_was_left_out)
 
 TEST_F(AnOverloadedLane, also_sheds_where_the_voted_attitude_comes_late)
 {
-    const auto vote = [&](std::int64_t age_ns) {
-        VotedAttitude voted;
-        voted.unit = rig.system.unit;
-        voted.epoch = test::Rig::first_epoch;
-        voted.sequence = rig.next_sequence() - 1;
-        voted.attitude = rig.attitude().attitude;
-        voted.stamp_ns[static_cast<std::size_t>(Hop::sensor)] = rig.now_ns() - age_ns;
-        rig.publish(bus::topics::voter_output, voted);
-    };
-    for (int i = 0; i < 300; ++i) {
-        frames(1);
-        vote(i < 100 ? 0 : 100 * ms);
-    }
+    vote_for(100, 0);
+    vote_for(200, 100 * ms);
     const auto attitudes = rig.attitudes();
-    for (int i = 0; i < 100; ++i) {
-        frames(1);
-        vote(100 * ms);
-    }
+    vote_for(100, 100 * ms);
     EXPECT_EQ(rig.attitudes() - attitudes, 25U);
     EXPECT_LT(error_rad(), 1e-1);
+}
+
+TEST_F(AnOverloadedLane, heeds_no_voted_attitude_of_a_frame_that_it_has_not_received)
+{
+    vote_for(100, 0);
+    vote(0, 500);
+    vote_for(200, 100 * ms);
+    const auto attitudes = rig.attitudes();
+    vote_for(100, 100 * ms);
+    EXPECT_EQ(rig.attitudes() - attitudes, 25U) << "those of received frames, which are late, still count";
 }
 
 }  // namespace

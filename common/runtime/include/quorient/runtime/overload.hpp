@@ -4,8 +4,8 @@
 
 namespace quorient::runtime {
 
-/// How much later samples come than the most punctual ones of the last half to one minute. Their stamps may be of another host's clock: the difference of
-/// the clocks and the constant part of the way drop out.
+/// How much later samples come than the most punctual ones of the last half to one minute. Their stamps may be of another host's clock: the
+/// difference of the clocks and the constant part of the way drop out.
 class SampleAge {
 public:
     /// @param epoch  of the publisher: another one may have another clock. @param stamp_ns  0 or less = not stamped
@@ -67,6 +67,7 @@ private:
     void fail(std::int64_t now_ns);
 
     std::int64_t bound_ns_;
+    bool may_shed_;  ///< At slow rates kept frames would be too far apart.
     State state_ = State::keeping_up;
     bool old_ = false;              ///< The last sample was old.
     std::int64_t last_ns_ = 0;      ///< When it came.

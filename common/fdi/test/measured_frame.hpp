@@ -1,6 +1,7 @@
 #pragma once
 
 #include "quorient/geometry/layouts.hpp"
+#include "quorient/messages/limits.hpp"
 #include "quorient/messages/sensor_frame.hpp"
 
 #include <Eigen/Core>
@@ -19,17 +20,18 @@ inline geometry::SensorCluster cone_4(double interval_s)
     return cluster;
 }
 
-/// A valid frame of four axes. @param measure  (axis, exact increment) -> what the axis gives out  @param exact  increments [rad]
-template <class Measure>
-SensorFrame four_axis_frame(std::uint64_t sequence, double interval_s, const Eigen::Vector4d& exact, Measure&& measure)
+/// A valid frame. @param exact  increments of all axes [rad]  @param measure  (axis, exact increment) -> what the axis gives out
+template <class Exact, class Measure>
+SensorFrame measured_frame(std::uint64_t sequence, double interval_s, const Exact& exact, Measure&& measure)
 {
     SensorFrame frame;
     frame.epoch = 1;
     frame.sequence = sequence;
     frame.interval_s = interval_s;
-    frame.axis_count = 4;
-    frame.valid_mask = 0b1111;
-    for (std::size_t axis = 0; axis < 4; ++axis) frame.increment[axis] = measure(axis, exact(static_cast<Eigen::Index>(axis)));
+    const auto axes = static_cast<std::size_t>(exact.size());
+    frame.axis_count = static_cast<std::uint8_t>(axes);
+    frame.valid_mask = all_axes(axes);
+    for (std::size_t axis = 0; axis < axes; ++axis) frame.increment[axis] = measure(axis, exact(static_cast<Eigen::Index>(axis)));
     return frame;
 }
 
