@@ -19,6 +19,7 @@ from integration_tests.harness.pipeline import LEVELS, NotInTime, Pipeline, ask_
 from integration_tests.harness.processes import BIN, CONFIGURATIONS
 from integration_tests.harness.streams import Recording
 
+GRAPH = BIN / "quorient-latency-graph"  # of the floors; no part of the ordinary build
 SETTLED_FRAMES, MEASURED_FRAMES = 300, 700
 START_S = 12
 STARTS = 4  # of a floor: without our bus secured processes on Fast DDS may never match (common/bus/README.md)
@@ -109,7 +110,7 @@ def measure_floor(level, rate_hz, vendor):
         keys = ("--keys", directory / "keys") if level != "none" else ()
         if keys:
             make_keys(keys[1], domain, level)
-        graph = [BIN / "quorient-latency-graph"]
+        graph = [GRAPH]
         floor = [[*graph, role, "--number", number, "--dds", vendor, "--domain", domain, "--rate", rate_hz, "--duration", 600,
                   *keys, *(("--as", name) if keys else ())] for name, role, number in FLOOR]
         begin_s = time.monotonic()
@@ -158,6 +159,8 @@ def main():
     parser.add_argument("--rate", type=at_least_once, default=100, help="frames per second")
     parser.add_argument("--without-floor", action="store_true", help="the demo alone, where quorient-latency-graph is not built")
     options = parser.parse_args()
+    if not (options.without_floor or GRAPH.exists()):
+        sys.exit(f"no {GRAPH}: cmake --build {BIN.parent} --target {GRAPH.name}, or leave the floors out by --without-floor")
     ask_for_priority()
     floors = {f"floor, {name}": functools.partial(measure_started_floor, vendor=vendor) for name, vendor in (("Cyclone DDS", "cyclonedds"), ("Fast DDS", "fastdds"))}
     measures = {"demo": measure} | ({} if options.without_floor else floors)

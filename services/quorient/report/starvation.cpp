@@ -22,7 +22,7 @@ constexpr double enough = 0.95;
 constexpr std::string_view too_little_time =
     "it gets too little processor time, or its input does not arrive: see its gaps, and real-time priority in deploy/README.md";
 
-constexpr std::string_view leaves_frames_out = "it is overloaded and leaves frames out, so that none is old: a lower rate, compose, shared memory, or more processors";
+constexpr std::string_view leaves_frames_out = "it is overloaded and leaves frames out, so that the others are not old: a lower rate, compose, shared memory, or more processors";
 
 /// OVERLOADED comes when that begins and when it ends.
 bool is_shedding(std::uint32_t service, std::span<const HealthEvent> events)
