@@ -1,5 +1,7 @@
 #include "quorient/calibration/axes_fit.hpp"
 
+#include "quorient/rotation/nearest.hpp"
+
 #include <fmt/format.h>
 #include <Eigen/Dense>
 #include <algorithm>
@@ -29,15 +31,6 @@ std::optional<Eigen::Matrix3Xd> body_from_axes(const geometry::Axes& nominal, co
     const Eigen::ColPivHouseholderQR<Eigen::MatrixX3d> solver(axes);
     if (solver.rank() < 3) return std::nullopt;
     return solver.solve(Eigen::MatrixXd::Identity(axes.rows(), axes.rows()));
-}
-
-/// The rotation that the profile matrix, the sum of reference x own', is closest to.
-Eigen::Matrix3d closest_rotation(const Eigen::Matrix3d& profile)
-{
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(profile, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Eigen::Matrix3d u = svd.matrixU();
-    if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;  // the nearest rotation, not the nearest reflection
-    return u * svd.matrixV().transpose();
 }
 
 }  // namespace
@@ -87,7 +80,7 @@ geometry::Axes mounted(const RateMoment& motion, const geometry::Axes& nominal, 
     std::vector<Eigen::Matrix3d> to_first(rows.size(), Eigen::Matrix3d::Identity());
     for (std::size_t i = 1; i < rows.size() && first; ++i) {
         const auto own = body_from_axes(nominal, rows[i]);
-        if (own) to_first[i] = closest_rotation(*first * motion.sum()(rows.front(), rows[i]) * own->transpose());
+        if (own) to_first[i] = rotation::nearest_rotation(*first * motion.sum()(rows.front(), rows[i]) * own->transpose());
     }
     return turned(nominal, instrument, to_first);
 }

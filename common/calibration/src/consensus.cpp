@@ -1,5 +1,7 @@
 #include "quorient/calibration/consensus.hpp"
 
+#include "quorient/rotation/nearest.hpp"
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -105,10 +107,7 @@ Eigen::Matrix3d rotation_of(const PairFit& fit, const Eigen::MatrixX3d& nominal)
         const Eigen::Vector3d& direction = fit.direction[static_cast<std::size_t>(a)];
         if (direction.norm() > least_gain) profile += direction.normalized() * nominal.row(a);
     }
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(profile, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Eigen::Matrix3d u = svd.matrixU();
-    if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
-    return u * svd.matrixV().transpose();
+    return rotation::nearest_rotation(profile);
 }
 
 bool is_reflected(const PairFit& fit, const Eigen::MatrixX3d& nominal)

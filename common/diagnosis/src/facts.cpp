@@ -3,7 +3,8 @@
 #include "fit.hpp"
 #include "rates.hpp"
 
-#include <Eigen/SVD>
+#include "quorient/rotation/nearest.hpp"
+
 #include <limits>
 
 namespace quorient::diagnosis {
@@ -15,8 +16,7 @@ constexpr double stated_gain_sigma = 0.03;
 /// The rotation in a matrix of gains.
 Eigen::Matrix3d rotation_in(const Eigen::Matrix3d& gain)
 {
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(gain, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Eigen::Matrix3d straight = svd.matrixU() * svd.matrixV().transpose();
+    const Eigen::Matrix3d straight = rotation::nearest_orthogonal(gain);
     return straight.determinant() > 0 ? straight : Eigen::Matrix3d::Identity();
 }
 

@@ -3,9 +3,9 @@
 #include "rates.hpp"
 
 #include "quorient/diagnosis/words.hpp"
+#include "quorient/rotation/nearest.hpp"
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <fmt/format.h>
 #include <array>
 #include <bit>
@@ -183,10 +183,9 @@ private:
         const bool separate = instruments_[a].log != instruments_[b].log;
         if (!separate && straight > contradiction && whole.misfit(*best) < right_angle_misfit && holds_nearly_always(pairs, *best))
             return {*best, false};
-        const Eigen::JacobiSVD<Eigen::Matrix3d> svd(whole.products, Eigen::ComputeFullU | Eigen::ComputeFullV);
-        if (svd.singularValues()(1) < second_direction * svd.singularValues()(0)) return found;
-        Eigen::Vector3d proper(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
-        const Eigen::Matrix3d fitted = svd.matrixU() * proper.asDiagonal() * svd.matrixV().transpose();
+        const Eigen::Vector3d spread = rotation::singular_values(whole.products);
+        if (spread(1) < second_direction * spread(0)) return found;
+        const Eigen::Matrix3d fitted = rotation::nearest_rotation(whole.products);
         const bool large = Eigen::AngleAxisd(fitted).angle() > least_turn;
         const bool clear = whole.misfit(fitted) < fitted_misfit && holds_nearly_always(pairs, fitted);
         if (clear && (separate || large)) return {fitted, !large};

@@ -3,10 +3,10 @@
 #include "quorient/diagnosis/words.hpp"
 #include "quorient/messages/name.hpp"
 #include "quorient/messages/units.hpp"
+#include "quorient/rotation/nearest.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <optional>
 #include <vector>
 
@@ -31,9 +31,8 @@ std::vector<Mounted> mounted_instruments(const ClusterDescription& cluster)
             ++count;
         }
         if (count != 3) return {};
-        const Eigen::JacobiSVD<Eigen::Matrix3d> nearest(axes, Eigen::ComputeFullU | Eigen::ComputeFullV);
-        const Eigen::Matrix3d rotation = nearest.matrixU() * nearest.matrixV().transpose();
-        all.push_back({std::string(text_of(cluster.instrument_name[i])), rotation.determinant() > 0 ? std::optional(rotation) : std::nullopt});
+        const Eigen::Matrix3d nearest = rotation::nearest_orthogonal(axes);
+        all.push_back({std::string(text_of(cluster.instrument_name[i])), nearest.determinant() > 0 ? std::optional(nearest) : std::nullopt});
     }
     return all.size() < 2 ? std::vector<Mounted>{} : all;
 }

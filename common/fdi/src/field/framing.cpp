@@ -1,7 +1,8 @@
 #include "field/framing.hpp"
 
+#include "quorient/rotation/nearest.hpp"
+
 #include <Eigen/Dense>
-#include <Eigen/SVD>
 #include <cmath>
 
 namespace quorient::fdi::field {
@@ -14,8 +15,7 @@ Eigen::Matrix3d frame_along(const geometry::SensorCluster& cluster, const Instru
     Eigen::Matrix3d rows;
     for (Eigen::Index i = 0; i < 3; ++i)
         rows.row(i) = cluster.axes.row(static_cast<Eigen::Index>(instrument.axis[static_cast<std::size_t>(i)]));
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(rows, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    return svd.matrixU() * svd.matrixV().transpose();
+    return rotation::nearest_orthogonal(rows);
 }
 
 InstrumentSet present_in(const Measurement& measurement, const InstrumentArray& array)

@@ -3,10 +3,10 @@
 #include "matrix.hpp"
 #include "quorient/configuration/values.hpp"
 #include "quorient/messages/units.hpp"
+#include "quorient/rotation/nearest.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <cmath>
 #include <limits>
 
@@ -70,9 +70,7 @@ std::optional<Quaternion> read_rows(Section& section, const std::string& key)
         section.problem(key, wrong);
         return std::nullopt;
     }
-    const Eigen::JacobiSVD<Eigen::Matrix3d> nearest(rows, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Eigen::Matrix3d rotation = nearest.matrixU() * nearest.matrixV().transpose();
-    return to_array(Eigen::Quaterniond(rotation).normalized());
+    return to_array(Eigen::Quaterniond(rotation::nearest_rotation(rows)).normalized());
 }
 
 std::optional<Quaternion> read_angles(Section& section, const std::string& key)
