@@ -14,7 +14,7 @@ from typing import Callable
 
 from integration_tests.containers.containers import TwoNetworks
 from integration_tests.containers.observed import Observed
-from integration_tests.harness.judge import FINAL_ERROR_RAD, disordered, errors, largest_gap, missing_frames
+from integration_tests.harness.judge import FINAL_ERROR_RAD, errors, largest_gap, missing_frames, steps_back
 from integration_tests.harness.pipeline import ALL_LANES, NotInTime
 from integration_tests.harness.steady import STEADY_FRAMES, Steady
 from integration_tests.harness.streams import DEGRADED, FULL
@@ -218,13 +218,13 @@ def sensor_fault(containers, observed, verdicts):
     return onset
 
 
-def judge_whole_run(observed, verdicts, onset):
+def judge_whole_run(observed, verdicts, onset, settled):
     right = 1 << FAULTY_AXIS
     before = {sample.isolated for sample in observed.merged if sample.identity < onset}
     after = {sample.isolated for sample in observed.merged if sample.identity > (onset[0], onset[1] + FRAMES_TO_ISOLATION)}
     verdicts.check("nothing is isolated before the fault", before == {0}, sorted(before))
     verdicts.check("behind it that axis and no other, through every restart", after == {right}, sorted(after))
-    judge_order(observed, verdicts)
+    judge_order(observed, verdicts, settled)
     verdicts.check("every line of the observer is whole", observed.unreadable == 0, observed.unreadable or "")
 
 
@@ -249,18 +249,27 @@ def stop(containers, verdicts):
     verdicts.check("every service ends in order when asked to stop", not codes, codes or f"{time.monotonic() - begin_s:.1f} s")
 
 
-def judge_order(observed, verdicts):
+def until_settled(observed):
+    """@returns how many samples of `voted` the plain reader has when it has found the stronger voter. Until then it may receive some
+    twice, since that voter resends what the reader could not take before (KNOWN_ISSUES.md)."""
+    until(lambda: observed.plain[-1].voter == 1, "the plain reader receives the stronger voter's samples", 30)
+    return len(observed.plain)
+
+
+def judge_order(observed, verdicts, settled):
     end = observed.newest()
-    turned = disordered(observed.merged, end, lambda sample: sample.voter), disordered(observed.plain, end, lambda sample: 0)
-    verdicts.check("no voter and no plain reader ever sees an output go back", turned == (0, 0), turned)
+    turned = [*steps_back(observed.merged, end, lambda sample: sample.voter), *steps_back(observed.plain[settled:], end, lambda sample: 0)]
+    verdicts.check("no voter's output goes back, nor does what a plain reader receives, once it knows both voters", not turned,
+                   "; ".join(f"voter {sample.voter} {sample.identity} behind voter {before.voter} {before.identity}" for sample, before in turned))
 
 
 def scenario(containers, observed, verdicts):
     """@returns [(title, first frame, last frame)] of each fault, for the report"""
     start_up(containers, observed, verdicts)
+    settled = until_settled(observed)
     onset = sensor_fault(containers, observed, verdicts)
     told = [(f"axis {FAULTY_AXIS} begins to lie", onset, observed.newest()), *play_all(containers, observed, chapters(), verdicts)]
-    judge_whole_run(observed, verdicts, onset)
+    judge_whole_run(observed, verdicts, onset, settled)
     stop(containers, verdicts)
     return told
 

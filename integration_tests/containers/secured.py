@@ -12,7 +12,7 @@ from integration_tests.containers.containers import COMPOSE_FILE, UID, Container
 from integration_tests.containers.observed import parse_event
 from integration_tests.containers.private_keys import private_keys_in_image
 from integration_tests.containers.scenario import (LANE_B, LEASE_S, PLAIN_GAP_FRAMES, Chapter, Verdicts, conclude, judge_fences, judge_order,
-                                                   kill_lane_b, play_all, stop, until, until_whole)
+                                                   kill_lane_b, play_all, stop, until, until_settled, until_whole)
 from integration_tests.harness.pipeline import NotInTime
 from integration_tests.harness.streams import Recording, parse_truth, parse_voted
 from integration_tests.harness.witness import Witness
@@ -129,10 +129,11 @@ def main():
     with Seen(secured) as seen:
         try:
             start_up(secured, seen, verdicts)
+            settled = until_settled(seen)
             play_all(secured, seen, chapters(), verdicts)
             isolated = {sample.isolated for sample in seen.merged}
             verdicts.check("nothing is isolated, through every restart", isolated == {0}, sorted(isolated))
-            judge_order(seen, verdicts)
+            judge_order(seen, verdicts, settled)
             judge_outsiders(seen, verdicts)
             stop(secured, verdicts)
             found = private_keys_in_image(image)
