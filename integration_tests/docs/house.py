@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""How the rooms of two commits compare: lines, public headers, the largest file, members of the two classes that hold most state.
+"""How the rooms of two commits compare: lines, public headers, the largest file, members of the two classes that hold most state, and in how
+many places each rule is written.
 
 usage: python3 -m integration_tests.docs.house [BEFORE [AFTER]] > integration_tests/results/house.md
 """
@@ -19,6 +20,27 @@ STATEFUL = {
     "the voter": ("common/voting/src/brain.hpp", "common/voting/include/quorient/voting/voter.hpp"),
 }
 LONG_FILE = 400
+CODE_FOLDERS = ("common", "services", "integration_tests/studies")
+FDI = ("common/fdi/src",)
+# A rule, the places that wrote it at cd3fac4 as the review counted them (of names of messages the pattern finds two more), and what finds those that write it now.
+RULES = (
+    ("in a new epoch an exclusion counts from sequence 0", 5, r"!= never\) \w+\[axis\] = 0", CODE_FOLDERS),
+    ("a publisher that restarts is silent for max(5 intervals, 100 ms)", 2, r"std::max\((silent_intervals|durations\.silence_ns)", CODE_FOLDERS),
+    ("vouched means FULL or DEGRADED", 2, r"VoteLevel::full \|\|", CODE_FOLDERS),
+    ("frames are missing before this one", 7, r"sequence - (newest_|previous_|last_|latest_)(\.|->)sequence - 1|sequence - next_sequence_"
+     r"|missing = last_->sequence \+ 1|0 : newest_\.sequence \+ 1|\(sequence - last_sequence\)", CODE_FOLDERS),
+    ("an axis is usable", 4, r"isfinite\((measurement\.)?increment(\[|\))", FDI),
+    ("angle between attitudes", 3, r"2 \* std::a(cos|tan2\(q)", CODE_FOLDERS),
+    ("words of codes", 2, r'VoteLevel::single, "', CODE_FOLDERS),
+    ("text into a name of a message", 6, r"copy_n\(.*(Size|Size - 1|name\.size\(\).*)\), name\.begin", CODE_FOLDERS),
+    ("corrected increment = (raw - bias x interval) / gain", 4, r"/ (\w+\.)*gain\[", CODE_FOLDERS),
+    ("the terms of motion noise, as a struct", 4, r"double jitter_along_s = 0", CODE_FOLDERS),
+    ("reading YAML with lines and columns", 2, r"YAML::Load(All|File)\(", CODE_FOLDERS),
+    ("reading the worked cases of the tests", 3, r'/ "cases\.json"', ("common",)),
+    ("main() of a service: command line, system file, bus, loop", 3, r"runtime::parse_options\(argc", CODE_FOLDERS),
+    ("how often a service looks whether it is ready", 3, r"readiness_period_ns =", CODE_FOLDERS),
+    ("what a lane made of a fault, as a struct", 3, r"struct Reaction \{", CODE_FOLDERS),
+)
 
 
 def git(*arguments):
@@ -66,6 +88,21 @@ def members(commit, path):
     return len(MEMBER.findall(text_of(commit, path)))
 
 
+def places(commit, pattern, folders):
+    """How many lines outside the tests match. The worked cases stand in tests alone."""
+    without_tests = () if "cases" in pattern else (":(exclude)*/test/*", ":(exclude)*_test.cpp")
+    found = subprocess.run(["git", "-C", ROOT, "grep", "-cE", "-e", pattern, commit, "--", *folders, *without_tests], capture_output=True, text=True)
+    return sum(int(line.rsplit(":", 1)[1]) for line in found.stdout.splitlines())
+
+
+def print_copies(commit):
+    print("\n## Copies of each rule, before and after\n\nBefore: as a review of cd3fac4 counted them by reading. After: lines outside the tests that "
+          "`git grep -nE PATTERN -- FOLDERS` finds.\n\n| rule | before | after | pattern | folders |\n|---|---|---|---|---|")
+    for rule, before, pattern, folders in RULES:
+        shown = pattern.replace("|", "\\|")
+        print(f"| {rule} | {before} | {places(commit, pattern, folders)} | `{shown}` | {' '.join(folders)} |")
+
+
 def main():
     before = sys.argv[1] if len(sys.argv) > 1 else BEFORE
     after = sys.argv[2] if len(sys.argv) > 2 else "HEAD"
@@ -84,6 +121,7 @@ def main():
         print(f"| {name} | {members(before, then)} (`{then}`) | {members(after, now)} (`{now}`) |")
     print("\nWhat the two classes hold by pointer has members of its own, then as now.")
     print(f"\nFiles of more than {LONG_FILE} lines after: " + (", ".join(f"`{path}` ({lines})" for lines, path in long_files) or "none") + ".")
+    print_copies(after)
 
 
 if __name__ == "__main__":
