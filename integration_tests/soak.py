@@ -27,7 +27,7 @@ LEASE_S = 0.07  # a lease of `voted`, max(50 ms, 3 intervals), and 20 ms
 GROWTH_MIB = 8
 SKIPPED = 77  # as ctest knows it
 FRAMES_TO_TRUST = 10  # an axis must agree with the others in eight frames (fdi::FourAxisDetector::release_frames)
-STANDBY_S = 2.5  # the weaker voter owns nothing before it has heard the stronger one, or for 2 s (voting::VoterSettings::listen_s)
+STANDBY_S = 2.5  # the weaker voter owns nothing before it has received the stronger one's output, or for 2 s (voting::VoterSettings::listen_s)
 
 
 class Soak:

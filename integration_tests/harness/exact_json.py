@@ -19,5 +19,5 @@ def loads(text):
 
 
 def objects(log):
-    """The objects in a file that takes both outputs of a running `echo --json`. What it tells its user meanwhile and a line half written are no objects."""
+    """The objects in a file that takes both outputs of a running `echo --json`. What it prints for its user meanwhile and a line half written are no objects."""
     return [loads(line) for line in log.read_text().split("\n")[:-1] if line.startswith("{")]

@@ -19,7 +19,7 @@ CONFIGURATIONS = ROOT / "deploy/configurations"
 
 
 class Told(unittest.TestResult):
-    """What one attempt told, to be told again to the result that counts."""
+    """What one attempt reported, to be reported again to the result that counts."""
 
     def __init__(self):
         super().__init__()

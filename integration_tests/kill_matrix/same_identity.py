@@ -170,7 +170,7 @@ class ContainedPipeline(Pipeline):
         return int(child), int(status.partition("NSpid:")[2].splitlines()[0].split()[-1])
 
     def until_running(self):
-        """Until everybody receives, and the voters count all lanes."""
+        """Until all processes receive, and the voters count all lanes."""
         self.until(lambda: all(recording.newest for recording in self.recordings), "all listeners receive samples")
         self.until(lambda: all(recording.newest.vouching == ALL_LANES for recording in self.outputs), "all lanes count")
 

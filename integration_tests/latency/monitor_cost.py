@@ -17,7 +17,7 @@ CASES = ({"transport": "UDP, Cyclone DDS", "rate_hz": 200}, {"transport": "UDP, 
 
 
 class Client(threading.Thread):
-    """Reads what comes, as fast as it comes, and connects again until it is told to end."""
+    """Reads what comes, as fast as it comes, and connects again until it is to end."""
 
     def __init__(self, port, lengths):
         super().__init__(daemon=True)

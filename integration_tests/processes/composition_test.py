@@ -1,4 +1,4 @@
-"""Several processes of a system file in one: the same output, the same topics for everybody outside, and one death for all of them."""
+"""Several processes of a system file in one: the same output, the same topics for all processes outside, and one death for all of them."""
 import json
 import os
 import signal
@@ -55,7 +55,7 @@ class Composition(ProcessTest):
         self.assertLess(summary["voted"]["attitude"]["max_error_rad"], 3e-6)
 
     def test_counts_no_sample_twice(self):
-        """Every service's own count of duplicates, by the status that it sends for everybody outside."""
+        """Every service's own count of duplicates, by the status that it sends to processes outside."""
         launch = self.start("quorient", "launch", CONFIGURATIONS / "demo.yaml", "--domain", self.domain, "--json", *settings(
             "compose=[[fdi-a, attitude-a, voter-1]]", "source.duration_s=60", "expect=null"))
         self.eventually(lambda: self.frames_of("attitude-a") > 400, "the lane handles frames")

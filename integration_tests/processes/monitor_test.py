@@ -1,4 +1,4 @@
-"""The monitor of a running system: what it serves, and that nobody notices whether it is there."""
+"""The monitor of a running system: what it serves, and that no other process notices whether it is there."""
 import contextlib
 import json
 import pathlib

@@ -46,7 +46,7 @@ class RealTime(ProcessTest):
 
 
 class Spinning(ProcessTest):
-    """`spin` of the sensor: its thread does not wait for messages. Told apart by what the kernel counts, whatever else the machine does."""
+    """`spin` of the sensor: its thread does not wait for messages. Judged by what the kernel counts, whatever else the machine does."""
 
     CPU_S = 0.5
     WAITS = 20

@@ -8,7 +8,7 @@
 
 namespace quorient::studies {
 
-/// One claim about a known optimum: what was asked, what the search found without being told, and what is known.
+/// One claim about a known optimum: what was asked, what the search found by itself, and what is known.
 struct Proof {
     std::string asked;
     std::string figure;

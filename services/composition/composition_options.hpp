@@ -8,7 +8,7 @@
 
 namespace quorient::composition {
 
-/// What `quorient-run` is told on its command line.
+/// The command line of `quorient-run`.
 struct Options {
     std::string system_file;
     std::vector<std::string> names;  ///< processes of the system file

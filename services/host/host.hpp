@@ -50,11 +50,11 @@ struct Role {
     std::vector<runtime::Switch> switches{};  ///< flags of this role alone
 };
 
-/// Runs the services of these processes on one event loop until they end or are told to stop. Their bus and real-time settings are the
+/// Runs the services of these processes on one event loop until they end or are to stop. Their bus and real-time settings are the
 /// same. @param system  name of their system, for their heartbeats. @returns the exit code
 int serve(bus::Bus& bus, const std::string& system, const std::vector<Process>& processes);
 
-/// main() of a service: reads the command line and the system file, joins the bus, runs until it is told to stop.
+/// main() of a service: reads the command line and the system file, joins the bus, runs until a signal ends it.
 /// @returns the exit code: 0 ended in order, 1 failed while running, 2 bad usage or configuration (explained on stderr).
 int run(int argc, char** argv, const Role& role);
 

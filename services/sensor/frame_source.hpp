@@ -44,7 +44,7 @@ public:
 
     virtual simulation::FaultInjector& faults() = 0;
 
-    /// What is new to tell; asked until there is nothing.
+    /// What is new to report; asked until there is nothing.
     virtual std::optional<Notice> notice() { return std::nullopt; }
 
     /// What was met so far that an operator should know (refused records of a log); empty if nothing.

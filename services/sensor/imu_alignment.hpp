@@ -32,7 +32,7 @@ public:
     /// @param publishers  nodes that write this IMU's topic.
     void add(std::size_t imu, const bus::ros2::Imu& message, std::int64_t arrival_ns, std::uint32_t publishers);
 
-    /// Whether the first frame can begin: every IMU has been heard for two skews, or one has for a second.
+    /// Whether the first frame can begin: every IMU has been received for two skews, or one has for a second.
     bool ready(std::int64_t now_ns) const;
 
     /// The first frame's interval begins here.

@@ -239,7 +239,7 @@ private:
     Correction correction_ = Correction::none();
     ImuAlignment alignment_;
     RestLearner rest_;
-    std::deque<Notice> learned_;  ///< at the start, not told yet
+    std::deque<Notice> learned_;  ///< at the start, not reported yet
     std::vector<ImuAlignment::Fault> told_;
     std::vector<Topic> topics_;  ///< for each IMU
     std::vector<bool> heard_;    ///< for each IMU: whether a message came

@@ -122,7 +122,7 @@ bool SensorPublisher::publish(std::uint64_t sequence)
         case Advance::frame:
             break;
     }
-    frame_.stamp_ns[static_cast<std::size_t>(Hop::sensor)] = node_.clock().steady_ns();  // also unasked: consumers tell by it whether they keep up
+    frame_.stamp_ns[static_cast<std::size_t>(Hop::sensor)] = node_.clock().steady_ns();  // also unasked: it shows consumers whether they keep up
     // Truth first: a monitor that holds an attitude then already holds what to compare it with.
     truths_.publish(truth_);
     if (frames_.publish(frame_)) ++node_.status().published;

@@ -20,7 +20,7 @@ public:
 
     const ClusterDescription& description() const override { return description_; }
 
-    /// Frames that nobody asks for are sailed through: the vessel's state needs every interval.
+    /// Frames that are not asked for are computed too: the vessel's state needs every interval.
     Advance advance_to(std::uint64_t sequence, SensorFrame& frame, TruthState& truth) override
     {
         for (; next_ <= sequence; ++next_)

@@ -1,4 +1,4 @@
-// One unit on the local bus under virtual time: what a service under test hears, and what it says.
+// One unit on the local bus under virtual time: what a service under test receives, and what it publishes.
 #pragma once
 
 #include "quorient/bus/local_bus.hpp"

@@ -9,7 +9,7 @@
 
 namespace quorient::voter {
 
-/// Whether at least half of the lanes that speak leave frames out because they are overloaded: then a voter compares them in the frames that all
+/// Whether at least half of the lanes that publish leave frames out because they are overloaded: then a voter compares them in the frames that all
 /// of them keep. Fewer lanes do not slow the output down: what they still give out is not taken, so they count as silent.
 class LanePace {
 public:
@@ -36,7 +36,7 @@ public:
     }
 
 private:
-    /// A lane that gives out nothing any more does not speak.
+    /// A lane that gives out nothing any more does not count.
     static constexpr std::int64_t forgotten_ns = 500'000'000;
 
     struct Lane {

@@ -32,7 +32,7 @@ private:
     std::int64_t offset_ns_ = 0;
 };
 
-/// A voter, as the others hear it.
+/// A voter, as the others receive it.
 struct VoterHeard {
     std::uint32_t voter = 0;
     bool alive = false;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::int64_t second_ns = 1'000'000'000;
 
-/// ROS 2's diagnostics are expected at 1 Hz; a voter that was not heard for so long is called silent, or no longer the owner.
+/// ROS 2's diagnostics are expected at 1 Hz; a voter whose output did not come for so long is called silent, or no longer the owner.
 constexpr std::int64_t diagnostics_period_ns = second_ns;
 
 }  // namespace

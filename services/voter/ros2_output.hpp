@@ -11,7 +11,7 @@
 namespace quorient::voter {
 
 /// The voted attitude for ROS 2: rt/imu/data and rt/diagnostics. Both voters make one; each listens to the owned topic `voted` as any
-/// foreign node does, and writes what it hears of itself. So DDS's own arbitration decides who writes, and nobody else does.
+/// foreign node does, and writes what it receives of itself. So DDS's own arbitration alone decides which voter writes.
 class Ros2Output {
 public:
     Ros2Output(const system::Ros2OutputSettings& settings, const voting::VoterSettings& voting, bus::Bus& bus, runtime::EventLoop& loop);

@@ -37,7 +37,7 @@ TEST_F(AnIntegrator, that_restarts_takes_over_the_voted_attitude_and_its_exclusi
             fresh.add(running.next());
             EXPECT_EQ(mode_of(fresh.state()), seed_first ? AttitudeMode::normal : AttitudeMode::initialising) << i;
         }
-        if (!seed_first) fresh.on_voted(voted_at(running, 110));  // in the middle of what it has heard: catches up
+        if (!seed_first) fresh.on_voted(voted_at(running, 110));  // in the middle of what it has received: catches up
         const auto state = fresh.publish();
         EXPECT_EQ(mode_of(state), AttitudeMode::normal);
         EXPECT_EQ(state.seeded, 1);

@@ -194,7 +194,7 @@ CalibratedCluster cluster_of(const ClusterSection& section)
     return cluster;
 }
 
-/// What the keys alone do not tell.
+/// Mistakes that no key shows alone.
 void check(const ClusterSection& section, const YAML::Node& document, Problems& problems)
 {
     const auto refuse_longer = [&](const std::string& path, const std::string& text, std::size_t longest) {

@@ -67,7 +67,7 @@ Checked check_count(const Brief& brief)
     return {};
 }
 
-/// The last failure needs an axis more than a parity equation has, unless the array is one of four: time tells there.
+/// The last failure needs an axis more than a parity equation has, unless the array is one of four: there the motion before it shows which axis.
 Checked check_failures(const Brief& brief)
 {
     const std::size_t k = brief.failures.value_or(0);

@@ -129,7 +129,7 @@ TEST(IsolatedSize, is_where_that_probability_is_reached_on_the_worst_axis)
     EXPECT_GE(size, detected_axis(five, {}));
 }
 
-// On eight axes of a cone: the two hypotheses that are hardest to tell, played.
+// On eight axes of a cone: the two hypotheses that are hardest to distinguish, played.
 TEST(IsolatedPair, is_where_the_nearest_rival_pair_is_mistaken_once_in_a_hundred)
 {
     const auto axes = geometry::layout("cone-8")->axes;

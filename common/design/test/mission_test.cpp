@@ -85,7 +85,7 @@ TEST(Survival, isolates_whole_instruments_where_whole_instruments_fail)
     Mission mission = unmistakable();
     mission.axis_failures_per_h = 0;
     mission.instrument_failures_per_h = 2e-4;
-    // Three triads: one failure is told, two that are left contradict each other.
+    // Three triads: one failure is isolated, two that are left contradict each other.
     const Survival three = played("triads-3", mission);
     const double fails = 1 - std::exp(-0.2);
     EXPECT_NEAR(three.probability, std::pow(1 - fails, 3) + 3 * fails * std::pow(1 - fails, 2), 4 * three.standard_error);

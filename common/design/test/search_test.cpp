@@ -1,4 +1,4 @@
-// The search finds what is known to be best, without being told.
+// The search finds what is known to be best, without knowing it.
 
 #include "briefs.hpp"
 #include "quorient/design/recognise.hpp"

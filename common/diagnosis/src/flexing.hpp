@@ -8,7 +8,7 @@
 
 namespace quorient::diagnosis {
 
-/// Tells one board from separate boxes on a frame that flexes: on a board an instrument's gain against the others is the same at all frequencies,
+/// Distinguishes one board from separate boxes on a frame that flexes: on a board an instrument's gain against the others is the same at all frequencies,
 /// on a structure each box sees a vibration of its own.
 class Flexing {
 public:

@@ -24,7 +24,7 @@ geometry::SensorCluster cone_6()
     return cluster;
 }
 
-/// Says what the test tells it to, and remembers what it was told.
+/// Assesses as the test says, and remembers what was excluded.
 class ScriptedDetector : public Detector {
 public:
     void assess(const Measurement&, Assessment& assessment) override { assessment = next; }

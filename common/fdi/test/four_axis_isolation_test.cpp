@@ -131,7 +131,7 @@ TEST(FourAxisIsolation, the_vector_predictor_names_the_soft_axis_at_any_phase_an
     EXPECT_GT(right, draws * 97 / 100);
 }
 
-/// What disturbs the bus may disturb an instrument, too. Without the history from before the gap nothing tells whose fault it is.
+/// What disturbs the bus may disturb an instrument, too. Without the history from before the gap nothing shows whose fault it is.
 TEST(FourAxisIsolation, the_vector_predictor_names_the_axis_whose_fault_begins_while_frames_are_lost)
 {
     constexpr std::uint64_t seed = 1402;

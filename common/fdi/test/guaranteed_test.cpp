@@ -171,7 +171,7 @@ TEST(Guaranteed, goes_on_with_fewer_assumed_faults_after_exclusions)
 
 TEST(Guaranteed, has_no_interval_where_the_axes_left_do_not_reach)
 {
-    // Without both x axes of two aligned triads nothing tells the x component; without one, the other bounds it.
+    // Without both x axes of two aligned triads nothing determines the x component; without one, the other bounds it.
     const auto detector = GuaranteedDetector::make(with_bound(1, 10), cluster_named("triads-2")).value();
     assess(*detector, measure(cluster_named("triads-2"), {1, 2, 3}));
     std::size_t both_x = 0;

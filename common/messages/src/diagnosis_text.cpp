@@ -52,7 +52,7 @@ std::string size_text(const FaultDiagnosis& diagnosis, std::size_t axis)
     }
 }
 
-/// The bias is told beside these.
+/// The bias is stated beside these.
 bool has_bias_beside(Diagnosis kind)
 {
     return kind == Diagnosis::gain || kind == Diagnosis::sign || kind == Diagnosis::mounting || kind == Diagnosis::delay;

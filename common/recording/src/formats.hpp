@@ -6,7 +6,7 @@
 
 namespace quorient::recording {
 
-/// The kinds of files that the first bytes tell apart.
+/// The kinds of files that the first bytes distinguish.
 enum class Kind {
     empty,
     mimu4444,

@@ -81,7 +81,7 @@ void FrameIntake::complain(const Complaint& complaint)
     ++complaints_;
 }
 
-/// Tells which description the oldest waiting frame has been missing for too long.
+/// Reports which description the oldest waiting frame has been missing for too long.
 void FrameIntake::look_at_waiting(std::int64_t now_ns)
 {
     const auto& frame = waiting_[waiting_begin_];

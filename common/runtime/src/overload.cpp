@@ -17,7 +17,7 @@ constexpr double longest_kept_interval_s = 0.025;
 /// Samples that are old for more than a seventeenth of the time add up.
 constexpr std::int64_t forgiveness = 16;
 
-/// In a trial so little is enough to tell that the overload goes on.
+/// In a trial so little is enough to show that the overload goes on.
 constexpr std::int64_t relapse_ns = 10'000'000;
 
 /// In a trial the others begin at the same stamp, but their samples are on the way.

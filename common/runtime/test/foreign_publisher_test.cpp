@@ -1,4 +1,4 @@
-// What a publisher that is not ours may do wrong is named, once, in words that tell its author what to change.
+// What a publisher that is not ours may do wrong is named, once, in words that show its author what to change.
 
 #include "four_gyros.hpp"
 #include "quorient/runtime/intake_report.hpp"

@@ -13,7 +13,7 @@
 
 namespace quorient::security {
 
-/// The message of a topic that both know without telling each other.
+/// The message of a topic that both know without an exchange.
 template <class Message>
 Message message_for(const bus::Topic<Message>& topic, std::uint64_t seed)
 {

@@ -33,7 +33,7 @@ public:
     /// A frame was published: a suspicion that a majority shares holds the settle time open.
     void on_published(Identity identity, std::int64_t now_ns);
 
-    /// A detector that reported no longer ago than this speaks.
+    /// A detector that reported no longer ago than this counts.
     void keep_pace(std::int64_t silence_ns) { silence_ns_ = silence_ns; }
 
     AxisMask corroborated(std::int64_t now_ns) const;

@@ -21,7 +21,7 @@ struct Durations {
     {
     }
 
-    /// Where one in so many frames comes. A leading voter must still be heard of within its lease, so silence ends before that.
+    /// Where one in so many frames comes. A leading voter must publish within its lease, so silence ends before that.
     Durations at_pace(unsigned one_in) const
     {
         Durations paced = *this;

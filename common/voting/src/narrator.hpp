@@ -6,7 +6,7 @@
 
 namespace quorient::voting {
 
-/// Tells an operator in plain words what the voter did.
+/// Reports to an operator in plain words what the voter did.
 class Narrator {
 public:
     explicit Narrator(const VoterSettings& settings) : lanes_(settings.lanes) {}

@@ -28,7 +28,7 @@ public:
     /// The lane that should be the primary: the stronger voter's choice if that one has kept it for some frames, otherwise the one that is.
     LaneIndex wanted_primary(std::int64_t now_ns) const;
 
-    /// Moves the stream to this lane's sample. @returns how consumers are told that the attitude moved.
+    /// Moves the stream to this lane's sample. @returns how consumers learn that the attitude moved.
     Continuity::Reset move_to(LaneIndex lane, Identity identity, std::int64_t now_ns);
 
     /// Publishes the primary's sample of this frame. The frames know the outcome already.

@@ -32,7 +32,7 @@ public:
     /// This voter was away: another one may own `voted` now, and have written what next() has not handed out yet.
     void start_over(std::int64_t now_ns);
 
-    /// This voter wrote `voted` before it was away, and nobody has written it since.
+    /// This voter wrote `voted` before it was away, and no other voter has written it since.
     void resume(const OtherVoters& others);
 
     /// The right to write is there, although the first frame to be written may still be to come.

@@ -42,7 +42,7 @@ public:
     void open(Identity identity, std::int64_t now_ns);
 
     /// The frame is published at now_ns; what lies before it and was not, never will be.
-    /// @param on_votes  enough votes came (as opposed to: patience ended): now_ns tells when the next frames may be expected.
+    /// @param on_votes  enough votes came (as opposed to: patience ended): now_ns shows when the next frames may be expected.
     void publish(std::uint64_t sequence, bool on_votes, std::int64_t now_ns);
 
     /// No frame is remembered, none is waited for; what may still be published stays.

@@ -1,4 +1,4 @@
-// A voter that did not run for a while: it gives out late what nobody else has given out, and nothing else.
+// A voter that did not run for a while: it gives out late what no other voter has given out, and nothing else.
 
 #include "pair_of_voters.hpp"
 

@@ -98,7 +98,7 @@ TEST(Isolation, that_a_second_detector_suspects_moves_the_output_at_once)
     fault.isolated = {58, 56, 52};  // lane c is first; b suspects already
     fault.play(scene, 0, 99);
     for (const VotedAttitude& output : scene.outputs) {
-        if (output.sequence < 53) continue;  // c speaks last: frame 52 went out before it did
+        if (output.sequence < 53) continue;  // c's sample is the last: frame 52 went out before it
         EXPECT_EQ(output.attitude, truth(output.sequence)) << "frame " << output.sequence;
     }
     EXPECT_EQ(changes(scene), 1U);
@@ -206,7 +206,7 @@ TEST(Isolation, of_a_majority_that_is_late_is_waited_for_in_place_of_the_lane_th
     fault.play(scene, 0, 99);
     for (std::uint64_t sequence = 100; sequence < 200; ++sequence) {
         scene.at(Scene::time_of(sequence), fault.sample(2, sequence));
-        // The others speak of this frame two intervals late.
+        // The others' samples of this frame come two intervals late.
         for (std::size_t lane = 0; lane < 2; ++lane) scene.at(Scene::time_of(sequence) + ms / 10, fault.sample(lane, sequence - 2));
     }
     for (const VotedAttitude& output : scene.outputs) {
@@ -228,7 +228,7 @@ TEST(Isolation, of_lanes_that_have_died_no_longer_holds_the_last_one_back)
     EXPECT_EQ(scene.voter.level(), VoteLevel::single);
 }
 
-/// Frames of which all lanes spoke before they knew nobody will correct: they go out, contaminated for as long as isolation took.
+/// Frames that all lanes published before they isolated are never corrected: they go out, contaminated for as long as isolation took.
 TEST(Isolation, that_verdicts_tell_before_the_frames_arrive_leaves_no_frame_out)
 {
     for (const std::uint64_t applied : {52U, 53U}) {

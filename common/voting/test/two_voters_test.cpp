@@ -251,7 +251,7 @@ TEST(TwoVoters, let_a_restarted_voter_continue_what_the_other_did)
     EXPECT_EQ(pair.weak.last().primary_lane, pair.strong.last().primary_lane);
 }
 
-/// Discovery may take longer than a lease: the lanes are heard before the other voter is.
+/// Discovery may take longer than a lease: the lanes' samples come before the other voter's.
 TEST(TwoVoters, let_one_that_starts_in_the_middle_of_a_stream_wait_for_the_other)
 {
     Scene scene(settings_of(3, {1, 2}, 1), Scene::time_of(300) - 3 * ms);

@@ -15,7 +15,7 @@ namespace {
 /// Events of one cause reach the bus within this time; flapping is one line as long as its pauses are shorter.
 constexpr std::int64_t together_ns = 2'000'000'000;
 
-/// Good news that tells how trouble ended, or that an order was carried out. Other events of no consequence are left out.
+/// Good news about the end of a trouble, or an order that was carried out. Other events of no consequence are left out.
 bool is_worth_a_line(const HealthEvent& event)
 {
     if (severity_of(event) != Severity::info) return true;

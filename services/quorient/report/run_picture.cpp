@@ -107,7 +107,7 @@ private:
         return cli::band_strip("Voted attitude", "deg", span_, bands);
     }
 
-    /// The axes that the lane ever left out, at most as many as can be told apart.
+    /// The axes that the lane ever left out, at most as many as can be distinguished.
     std::vector<std::size_t> accused_by(std::size_t place) const
     {
         AxisMask mask = 0;

@@ -1,4 +1,4 @@
-// An order reaches everybody whom it concerns, also those that were not found, or not listening, at its first word.
+// An order reaches each service that it concerns, also one that was not found, or not listening, when it was first sent.
 
 #include "order.hpp"
 

@@ -32,7 +32,7 @@ namespace quorient::cli {
 namespace {
 
 
-/// After the source has ended: the last frame's way through the pipeline, then everybody's goodbye.
+/// After the source has ended: the last frame's way through the pipeline, then the end of all processes.
 constexpr std::int64_t linger_ns = second_ns;
 
 struct LaunchOptions {

@@ -16,7 +16,7 @@ constexpr std::int64_t look_period_ns = 20'000'000;
 // All matches of a domain come within about a second of each other.
 constexpr std::int64_t discovery_ns = 1'200'000'000;
 
-// A status comes twice a second: so long another service may be found that has to hear this. A unit has one sensor publisher.
+// A status comes twice a second: so long another service may be found that has to receive this. A unit has one sensor publisher.
 constexpr std::int64_t all_found_ns = 600'000'000;
 
 // Members of a secured system first prove who they are, so they are found later.

@@ -14,8 +14,8 @@
 
 namespace quorient::cli {
 
-/// One order to a unit's services. It is repeated until everybody whom it concerns has answered: a service that has just started, or
-/// that this process has just found, may not hear the first word. Whom it concerns is known from the services' status.
+/// One order to a unit's services. It is repeated until each service that it concerns has answered: a service that has just started, or
+/// that this process has just found, may not receive the first one. Which services it concerns is known from the services' status.
 class Order {
 public:
     static constexpr double patience_s = 5;

@@ -19,13 +19,13 @@ constexpr std::size_t looks_per_window = 8;
 /// From this statistic on every window is looked at in every frame.
 constexpr double alert_level = 0.7;
 
-/// A window that finds another culprit with at least this certainty speaks against the most certain one.
+/// A window that finds another culprit with at least this certainty counts against the most certain one.
 constexpr double contradicting_level = 0.9;
 
 /// Rounds of estimating a step and its beginning by turns.
 constexpr int onset_rounds = 6;
 
-/// Gated sums over fewer frames tell nothing that the others do not.
+/// Gated sums over fewer frames show nothing that the others do not.
 constexpr std::size_t shortest_gated = 8;
 
 /// Between two ways to reckon the same.
@@ -273,7 +273,7 @@ void AccumulatingDetector::assess(const Measurement& measurement, Assessment& as
     if (detectable_remaining() == 0) return;
     const ArraySums::Added added = sums_.add(measurement);
     if (gated_) gated_->add(measurement);
-    if (added == ArraySums::Added::unusable) assessment.outcome = Outcome::warming_up;  // this frame tells nothing
+    if (added == ArraySums::Added::unusable) assessment.outcome = Outcome::warming_up;  // this frame shows nothing
     if (added != ArraySums::Added::counted || sums_.size() < 2) return;
 
     const Finding finding = most_certain();

@@ -29,7 +29,7 @@ public:
     Suspicions examine(const WindowSums& sums, const WindowSums* low_passed, const Learning& learning, InstrumentSet compared, const Ages& age,
                        std::uint64_t frame) const;
 
-    /// The same for two instruments, which cannot be told apart: `instrument` says nothing.
+    /// The same for two instruments, which cannot be distinguished: `instrument` has no meaning.
     Suspicion disagreement(const WindowSums& sums, const Learning& learning, InstrumentSet two, const Ages& age, std::uint64_t frame) const;
 
 private:

@@ -22,10 +22,10 @@ public:
     /// How close sound sensors come is of interest from here on.
     static constexpr double watched_from = 0.4;
 
-    /// A suspicion counts where it exceeds what speaks against any other candidate by this factor.
+    /// A suspicion counts where it exceeds the evidence against any other candidate by this factor.
     static constexpr double margin = 1.25;
 
-    /// Where nothing else speaks for or against any candidate.
+    /// Where there is no other evidence for or against any candidate.
     static constexpr double disagreement_level = 1.3;
 
     static constexpr double lasting_sigmas = 6;

@@ -88,7 +88,7 @@ void FourAxisDetector::assess(const Measurement& measurement, Assessment& assess
     }
 }
 
-/// All four are heard, three are used.
+/// All four are measured, three are used.
 void FourAxisDetector::hear_excluded(const Measurement& measurement)
 {
     const Eigen::Map<const Eigen::Vector4d> z(measurement.increment.data());
@@ -164,7 +164,7 @@ void FourAxisDetector::judge(const Frame& frame, Assessment& assessment)
 void FourAxisDetector::judge_suspicion(const Frame& frame, Assessment& assessment)
 {
     if (!holding_ && learnt() < warm_up_frames) {
-        // A fault is seen, and nothing that was learnt before it tells whose it is.
+        // A fault is seen, and nothing that was learnt before it shows whose it is.
         assessment.outcome = Outcome::ambiguous;
         for (std::size_t axis = 0; axis < axis_count; ++axis) assessment.add_candidate(axis_bit(axis));
         return start_again();

@@ -13,7 +13,7 @@
 
 namespace quorient::fdi {
 
-/// Four axes: the parity scalar v'z tells that there is a fault and not where, so time has to tell: a derived method predicts the
+/// Four axes: the parity scalar v'z shows that there is a fault and not where, so time has to: a derived method predicts the
 /// motion from the frames before the fault and the triad that fits the prediction leaves out the faulty axis. [paper 003]
 ///
 /// This base holds what such methods share. A frame is suspicious when |v'z| exceeds
@@ -28,7 +28,7 @@ namespace quorient::fdi {
 /// The first `warm_up_frames` frames are warming_up. A fault that is there before any history leaves all four axes as candidates.
 /// A frame with one axis missing cannot contradict itself: it is healthy with statistic 0. With an axis excluded every frame is,
 /// and detectable_remaining() is 0. An excluded axis that is trusted again while it is still wrong cannot be named, for want of a history
-/// without its fault; so expectation() tells whether the other three agree with it. Allocates nothing per frame.
+/// without its fault; so expectation() shows whether the other three agree with it. Allocates nothing per frame.
 class FourAxisDetector : public Detector {
 public:
     static constexpr std::size_t axis_count = 4;

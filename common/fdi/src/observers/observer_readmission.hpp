@@ -11,7 +11,7 @@ namespace quorient::fdi {
 /// as much was expected of it as when its fault showed* (nine tenths: a motion that repeats itself meets its own peak again only up to
 /// noise). A stuck or soft sensor of a vessel at rest earns nothing.
 ///
-/// One frame that disagrees starts the time anew; frames of which the method cannot tell anything do not count.
+/// One frame that disagrees starts the time anew; frames that the method cannot judge do not count.
 /// What was expected when a fault showed is that of the last frame before which all had been healthy for a second: a fault moves what the
 /// directional observers expect, and their metrics may pass 0 before they name it. Never readmits channels whose exclusion was not seen
 /// here (adopted after a restart) or came within the first second: nobody knows what exposed them. Allocates nothing.

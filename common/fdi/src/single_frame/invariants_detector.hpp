@@ -24,7 +24,7 @@ namespace quorient::fdi {
 ///
 /// For 6 to 24 axes; after exclusions with whatever is left. Without a tolerance, T_v is that of noise,
 /// z(1 - pfa / 2m) sqrt(sum v_i^2 sigma_i^2) over m quadruples.
-/// Not guaranteed: a refusal does not tell a third fault from noise just above T.
+/// Not guaranteed: a refusal does not distinguish a third fault from noise just above T.
 class InvariantsDetector final : public FrameDetector {
 public:
     /// Settings: tolerance (else sigma and pfa), max_faults (default 2), relaxed, bare.

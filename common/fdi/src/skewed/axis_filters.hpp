@@ -23,7 +23,7 @@ public:
     /// @returns suspicions of axes: `instrument` is the axis, `component` says nothing.
     field::Suspicions examine(const AxisWindows& sums, const Allowance& allowance, AxisSet compared, const field::Ages& age, std::uint64_t frame) const;
 
-    /// The same for axes that leave one parity only, and cannot be told apart: `instrument` says nothing.
+    /// The same for axes that leave one parity only, and cannot be distinguished: `instrument` has no meaning.
     field::Suspicion disagreement(const AxisWindows& sums, const Allowance& allowance, AxisSet compared, const field::Ages& age, std::uint64_t frame) const;
 
 private:

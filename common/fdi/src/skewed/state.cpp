@@ -9,7 +9,7 @@
 namespace quorient::fdi {
 namespace {
 
-/// So many axes always stay in use: with fewer nothing could tell that the accusation is wrong.
+/// So many axes always stay in use: with fewer nothing could show that the accusation is wrong.
 constexpr std::size_t least_in_use = 4;
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 namespace quorient::fdi {
 
-/// Watches excluded axes and tells when one has earned its place again: for a stated time it agreed with the working axes *while
+/// Watches excluded axes and reports when one has earned its place again: for a stated time it agreed with the working axes *while
 /// the motion along it was at least that which exposed its fault*. A soft gyro at rest looks healthy and earns nothing.
 ///
 /// Agreement is judged per frame and, because faults below one frame's noise exist, on the sum over the whole time.

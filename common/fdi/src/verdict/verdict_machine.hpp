@@ -81,7 +81,7 @@ private:
     VerdictState publish_suspicion(const Evidence& suspicion);
     const Evidence* latest_suspicion() const;
 
-    /// The frame `age` frames ago that told anything, 0 = newest.
+    /// The frame `age` frames ago among those that showed anything, 0 = newest.
     const Evidence& past(unsigned age) const { return window_[(window_next_ + max_window - 1 - age) % max_window]; }
 
     template <class Predicate>

@@ -190,7 +190,7 @@ bool any_word(const Words& words, bool (*test)(std::string_view))
     return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return test(word); });
 }
 
-/// What a column holds that tells motion: rates, increments or accelerations.
+/// What a column holds that describes motion: rates, increments or accelerations.
 std::optional<Quantity> motion_of(const Words& words)
 {
     if (contains(words, {"covariance", "bias", "err", "unfilt", "setpoint", "euler", "orientation", "mag", "quat"})) return std::nullopt;

@@ -11,8 +11,8 @@ namespace quorient::recording::csv {
 /// A table of gyro samples as people have it: wide (a row per time, columns of several instruments) or long (a row per instrument and time).
 class CsvLog final : public InstrumentLog {
 public:
-    /// Reads as much of the log as it takes to understand it, all of it if nothing in its beginning tells its unit.
-    /// @returns an error with the line, if the header names no gyro and time, or a unit cannot be told.
+    /// Reads as much of the log as it takes to understand it, all of it if nothing in its beginning shows its unit.
+    /// @returns an error with the line, if the header names no gyro and time, or a unit cannot be determined.
     static tl::expected<std::unique_ptr<InstrumentLog>, std::string> open(Input input, std::string name, const LogOptions& options);
 
     ReadOutcome next(InstrumentSample& sample) override;

@@ -9,7 +9,7 @@
 
 namespace quorient::recording::csv {
 
-/// Tells in which unit a gyro's values are that do not say it, from the values alone. Three signs, each sufficient:
+/// Finds from a gyro's values alone in which unit they are, where the log does not state it. Three signs, each sufficient:
 /// values beyond what any gyro reads in rad/s; a step between values that is the smallest of a usual sensor in one unit; gravity, whose
 /// direction in the accelerometer turns by as much as the gyro says.
 class RateJudge {
@@ -18,11 +18,11 @@ public:
     void add(double interval_s, const std::array<double, 3>& rate, const std::array<double, 3>& acceleration);
 
     struct Verdict {
-        std::optional<RateUnit> unit;  ///< nothing: it cannot be told
+        std::optional<RateUnit> unit;  ///< nothing: it cannot be determined
         std::string reason;            ///< why, in words that follow "read as deg/s, since …"; or what to do
     };
 
-    /// What can be said now. More samples may tell more.
+    /// What can be said now. More samples may show more.
     Verdict verdict() const;
 
     /// How many times as far gravity turns in the body as the rates say, taken as rad/s. Nothing: the motion does not show it.

@@ -12,7 +12,7 @@ namespace quorient::recording::csv {
 namespace {
 
 constexpr std::size_t header_lines = 50;  // exports begin with lines about the device
-constexpr std::size_t looked_at_rows = 2000;  // rows from which times and decimal commas are told
+constexpr std::size_t looked_at_rows = 2000;  // rows from which times and decimal commas are recognised
 constexpr std::size_t judged_at_once = 5000;
 constexpr double slowest_hz = 4;  // that a gyro is logged at; 1000 times as much is the fastest, so that one unit of time fits
 constexpr double gravity_m_s2 = 9.80665;
@@ -234,7 +234,7 @@ void CsvLog::judge_accelerations()
     }
 }
 
-/// The unit of rates where the header does not name it: read on until the values tell it.
+/// The unit of rates where the header does not name it: read on until the values show it.
 std::optional<std::string> CsvLog::judge_rates()
 {
     const auto unknown = [](const GyroColumns& gyro) { return !(gyro.factor[0] > 0); };
@@ -269,7 +269,7 @@ std::optional<std::string> CsvLog::judge_rates()
     return std::nullopt;
 }
 
-/// A unit that is stated may still be wrong: gravity that turns with the body tells.
+/// A unit that is stated may still be wrong: gravity that turns with the body shows it.
 void CsvLog::doubt_stated_unit()
 {
     const GyroColumns& gyro = layout_.gyros.front();

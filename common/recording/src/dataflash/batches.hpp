@@ -13,7 +13,7 @@ struct BatchSample {
     std::array<double, 3> rate_rad_s{};
 };
 
-/// Bursts of samples at a sensor's full rate: an ISBH record tells instrument, scale, first time and rate; the ISBD records with its
+/// Bursts of samples at a sensor's full rate: an ISBH record states instrument, scale, first time and rate; the ISBD records with its
 /// number hold the samples.
 class Batches {
 public:

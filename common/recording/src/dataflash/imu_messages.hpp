@@ -29,7 +29,7 @@ bool is_imu_name(std::string_view name);
 /// @returns nothing if the message has no gyros.
 std::optional<ImuMessage> imu_message(const RecordFormat& format, const Units& units);
 
-/// What the log calls an instrument: "IMU2", or "IMU[1]" where a field tells the instance.
+/// What the log calls an instrument: "IMU2", or "IMU[1]" where a field has the instance.
 std::string instrument_name(const std::string& message, std::optional<double> instance);
 
 /// The message without the digit behind it: instruments of IMU, IMU2 and IMU3 belong together.

@@ -14,14 +14,14 @@ namespace quorient::recording {
 namespace {
 
 constexpr std::ptrdiff_t steps_around = 15;  // on either side of a top
-constexpr double least_curvature = 1e-5;    // correlation per step squared: motion below 0.05 Hz tells no time
+constexpr double least_curvature = 1e-5;    // correlation per step squared: motion below 0.05 Hz fixes no time
 constexpr double least_unlike = 1e-8;       // what rounding leaves of 1 - correlation squared
 constexpr double largest_lag_error_s = 0.005;
 constexpr double tied_correlation = 0.9;    // from it on, the motion ties two clocks
 constexpr double same_log_lag_s = 0.15;     // that filters and buses of one vehicle differ by
 constexpr double same_epoch_lag_s = 1.0;
 constexpr double other_epoch_lag_s = 3.0;   // logs that were switched on by hand
-constexpr double least_motion_rad_s = 0.02; // standard deviation of the rate of turn in a stretch that tells a time
+constexpr double least_motion_rad_s = 0.02; // standard deviation of the rate of turn in a stretch that fixes a time
 constexpr std::size_t fewest_for_slope = 5;
 constexpr double least_gain = 0.9;          // placing samples must reduce the disagreement to this share
 

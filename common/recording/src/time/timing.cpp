@@ -8,7 +8,7 @@
 namespace quorient::recording {
 namespace {
 
-constexpr std::size_t steps_to_learn = 400;   // steps from which the period is told
+constexpr std::size_t steps_to_learn = 400;   // steps from which the period is estimated
 constexpr double regular_share = 1.5;         // a step beyond so many periods is a gap
 constexpr double shortest_share = 0.5;        // a step below so many periods is a late sample's neighbour
 constexpr double longest_hold_s = 0.1;        // that a rate can stand for: beyond it the motion in between is not in the log
@@ -147,7 +147,7 @@ void InstrumentMeter::judge_values(const InstrumentSample& sample)
     figures_.temperature_max_c = std::fmax(figures_.temperature_max_c, sample.temperature_c);
 }
 
-/// Rates of whole stretches; one with a hole in it tells no rate.
+/// Rates of whole stretches; one with a hole in it gives no rate.
 void InstrumentMeter::count_for_rate(std::int64_t time_ns)
 {
     const double length_s = seconds_of(time_ns - stretch_begin_ns_);

@@ -25,7 +25,7 @@ struct MotionSection {
 
 const configuration::Table<MotionSection>& motion_table();
 
-/// @returns what is wrong with it, where one key does not tell.
+/// @returns what is wrong with it, where no key shows it alone.
 tl::expected<simulation::Motion, std::string> motion_of(const MotionSection& section);
 
 }  // namespace quorient::system

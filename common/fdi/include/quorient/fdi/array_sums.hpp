@@ -27,7 +27,7 @@ namespace quorient::fdi {
 /// Gated sums: where an instrument contradicts the mean of the others by a chi-square beyond the gate, W_k is less by the factor of the
 /// two, again the same for all instruments. c W then bounds the covariance of what is left: sum W_k (C + M_k) W_k <= c W.
 ///
-/// Each frame waits for its successor, which tells the acceleration after it: one frame of delay.
+/// Each frame waits for its successor, which gives the acceleration after it: one frame of delay.
 class ArraySums {
 public:
     static constexpr std::size_t longest_window = 512;  ///< frames

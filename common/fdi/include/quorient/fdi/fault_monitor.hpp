@@ -27,7 +27,7 @@ public:
                                                         const geometry::SensorCluster& cluster);
 
     /// The same for channels that are no directions in space (VESSEL_RATES): each may be the last one left, and the detector's own model
-    /// tells when one may come back (ObserverReadmission).
+    /// decides when one may come back (ObserverReadmission).
     static tl::expected<FaultMonitor, std::string> make(std::unique_ptr<Detector> detector, const VerdictSettings& verdict,
                                                         std::size_t channels);
 

@@ -73,8 +73,8 @@ public:
     const Eigen::MatrixXd& gain(std::size_t observer) const { return observers_[observer].gain; }
     Poles poles(std::size_t observer) const;
 
-    /// All observers start from the state that the valid samples tell (least squares), or 0 where they do not.
-    /// @returns the frames until a wrong start has decayed to 1/1000 in all observers; 0 where the samples tell the whole state.
+    /// All observers start from the state that the valid samples determine (least squares), or 0 where they do not.
+    /// @returns the frames until a wrong start has decayed to 1/1000 in all observers; 0 where the samples determine the whole state.
     std::uint64_t start(const Outputs& samples, AxisMask valid);
 
     /// Compares the samples with what was expected of them. Channels that are not `valid` have residual 0.
@@ -148,7 +148,7 @@ private:
     double z_ = 0;
     Outputs variance_;                   ///< of one sample's noise
     std::uint64_t settling_frames_ = 0;  ///< from a start that is wrong to 1/1000 of it, in all observers
-    bool state_is_measured_ = false;     ///< the samples of all channels tell the whole state
+    bool state_is_measured_ = false;     ///< the samples of all channels determine the whole state
     std::uint64_t attribution_frames_ = 0;
     SmallMatrix from_samples_;  ///< pseudo-inverse of C
     std::vector<Parameter> parameters_;

@@ -27,7 +27,7 @@ inline constexpr settings::Bounds observer_margin_bounds{.lowest = 1};
 ///
 /// An input that is not finite (a rudder stream that stopped) makes the verdict `blind`: without it nothing can be expected. When it comes
 /// back, and after a gap of more than 20 frames, the observers start again; they warm up where the channels that are trusted and valid do
-/// not tell the whole state.
+/// not determine the whole state.
 ///
 /// An excluded channel would be a healthy one again (expectation) where nothing that the observers see contradicts the trusted channels and
 /// it. Directional: all metrics are below their limits; the value expected is then the observer's own, which the fault moves as long as it
@@ -70,7 +70,7 @@ private:
     std::optional<Identity> last_;
     AxisMask valid_ = 0;                 ///< of the newest frame
     std::uint64_t frames_ = 0;           ///< since the observers started
-    std::uint64_t settling_frames_ = 0;  ///< of them, those that tell nothing yet
+    std::uint64_t settling_frames_ = 0;  ///< of them, those that show nothing yet
     std::uint64_t naming_frames_ = 0;    ///< of them, those that name nobody yet (blind)
     std::uint64_t alarm_since_ = 0;      ///< directional: the sequence with which alarm_frames_ left 0
     std::uint64_t alarm_frames_ = 0;     ///< directional: up with every alarm, down with every frame without

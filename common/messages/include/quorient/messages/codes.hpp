@@ -16,7 +16,7 @@ enum class VerdictState : std::uint8_t {
     suspect = 3,    // a fault is seen and not yet confirmed
     isolated = 4,   // the faulty axes are named
     ambiguous = 5,  // a fault, and the sets that explain it
-    blind = 6,      // more faults than the data can tell
+    blind = 6,      // more faults than the data can show
     provisional = 7,  // an axis is left out until the contradiction ends or is confirmed
     saturated = 8,    // all instruments are at their range: nobody is to blame, and the attitude is not trustworthy from here on
 };
@@ -110,7 +110,7 @@ enum class EventCode : std::uint8_t {
     command_refused = 53,
     unknown_revision = 54,
     consumers_missing = 55,
-    other_contract = 56,  // a peer speaks another version of the wire contract
+    other_contract = 56,  // a peer has another version of the wire contract
     security = 57,        // a peer or a sample was refused
     overloaded = 58,      // frames are skipped, since this machine cannot carry the rate
     identity_expires = 60,  // in less than 30 days

@@ -5,7 +5,7 @@
 
 namespace quorient {
 
-/// What the simulator knows and no sensor tells. Read by monitors and tests, never by the pipeline.
+/// What the simulator knows and no sensor measures. Read by monitors and tests, never by the pipeline.
 struct TruthState {
     std::uint64_t epoch = 0;
     std::uint64_t sequence = 0;

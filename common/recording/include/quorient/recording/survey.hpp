@@ -67,7 +67,7 @@ struct SurveyedLog {
     std::int64_t last_ns = 0;
 };
 
-/// What one reading of all logs tells. Holds at most 64 MB of samples: stretches of 20 s, all of them or every second, fourth … one.
+/// What one reading of all logs shows. Holds at most 64 MB of samples: stretches of 20 s, all of them or every second, fourth … one.
 struct Survey {
     std::vector<std::filesystem::path> files;
     LogOptions options;

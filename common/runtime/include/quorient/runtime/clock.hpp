@@ -19,7 +19,7 @@ public:
     std::int64_t wall_ns() const override;
 };
 
-/// Time that moves only when told: replay and tests.
+/// Time that moves only when it is set: replay and tests.
 class VirtualClock final : public Clock {
 public:
     std::int64_t steady_ns() const override { return now_ns_; }

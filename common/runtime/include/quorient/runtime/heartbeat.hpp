@@ -11,7 +11,7 @@ namespace quorient::runtime {
 /// Where services leave their heartbeats: $QUORIENT_RUN_DIR, else /run/quorient.
 std::filesystem::path run_directory();
 
-/// Tells from outside DDS that a service's frames are fresh: a small file, rewritten in place. Its last line is a sum of the others. So a
+/// Shows outside DDS that a service's frames are fresh: a small file, rewritten in place. Its last line is a sum of the others. So a
 /// reader notices a beat that is half written, and reads it again.
 class Heartbeat {
 public:

@@ -34,13 +34,13 @@ struct NodeSettings {
     std::uint32_t service = 0;  ///< unique in the domain
     ServiceRole role = ServiceRole::unknown;
     bool stamps = false;     ///< fill the hop stamps of messages
-    bool heartbeat = true;   ///< leave a heartbeat file, and tell the service manager
+    bool heartbeat = true;   ///< leave a heartbeat file, and notify the service manager
     bool log_events = true;  ///< also to stderr
     OrderSettings orders;
     std::int64_t identity_expires_ns = 0;  ///< when its certificate expires, since 1970; 0 = no certificate
 };
 
-/// What every service does beside its work: tells its events and its status, leaves its heartbeat, watches its endpoints.
+/// What every service does beside its work: publishes its events and its status, leaves its heartbeat, watches its endpoints.
 class Node {
 public:
     Node(NodeSettings settings, bus::Bus& bus, EventLoop& loop);
@@ -51,10 +51,10 @@ public:
     /// One event: published, latched for late joiners, and logged.
     void report(EventCode code, Severity severity, Identity identity, std::uint32_t axes, std::string_view text, std::uint64_t request = 0);
 
-    /// As report(), but at most once a second for each code. @returns whether it was told now.
+    /// As report(), but at most once a second for each code. @returns whether it was reported now.
     bool report_throttled(EventCode code, Severity severity, Identity identity, std::uint32_t axes, std::string_view text);
 
-    /// Tells the new state at once.
+    /// Publishes the new state at once.
     void set_state(ServiceState state);
     ServiceState state() const { return state_of(status_); }
 
@@ -71,7 +71,7 @@ public:
     /// have answered. An order that the settings do not permit is refused with an event that names the sender.
     void on_order(std::initializer_list<CommandAction> kinds, std::function<void(const FaultCommand&)> handler);
 
-    /// The endpoint whose transport and peers the status tells.
+    /// The endpoint whose transport and peers the status states.
     void main_output(std::function<bus::EndpointStatus()> status) { main_output_ = std::move(status); }
 
     const NodeSettings& settings() const { return settings_; }

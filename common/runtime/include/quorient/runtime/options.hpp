@@ -10,7 +10,7 @@
 
 namespace quorient::runtime {
 
-/// What every service is told on its command line.
+/// The command line of every service.
 struct Options {
     std::string system_file;
     std::string name;  ///< of this process in the system file

@@ -8,7 +8,7 @@
 namespace quorient::runtime {
 
 /// Talks to the service manager that started this process, if one did: the datagrams of sd_notify(3) to $NOTIFY_SOCKET.
-/// The watchdog is fed only with handled frames: a process that lives and hears nothing is restarted.
+/// The watchdog is fed only with handled frames: a process that lives and receives nothing is restarted.
 /// Each of several services in one process has such an object. The process is ready once all are; the watchdog is fed once all have handled
 /// a frame.
 class ServiceManager {

@@ -50,7 +50,7 @@ struct LogSettings {
     std::optional<double> stated_rate_hz;  ///< as the file says; its default is no claim about the log
 };
 
-/// One IMU of a robot, heard as sensor_msgs/Imu.
+/// One IMU of a robot, received as sensor_msgs/Imu.
 struct Ros2ImuSettings {
     std::string topic;  ///< as DDS knows it
     std::string name;

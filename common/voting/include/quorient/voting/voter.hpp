@@ -136,7 +136,7 @@ private:
     std::optional<std::int64_t> now_ns_;             ///< The latest time passed in; none before the first call.
     std::int64_t promised_ns_;                       ///< When poll was asked for. Later than now_ns_ after every call.
     std::optional<std::int64_t> published_ns_;       ///< When a frame was last published; none after a repetition or an absence.
-    unsigned one_in_ = 1;                            ///< As told by keep_pace().
+    unsigned one_in_ = 1;                            ///< As set by keep_pace().
     bool owned_before_ = false;                      ///< While listening: it owned `voted` before it was delayed.
     Identity missed_until_;                          ///< After listening: frames up to this one may have been published by another voter.
 };

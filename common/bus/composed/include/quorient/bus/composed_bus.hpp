@@ -9,7 +9,7 @@
 namespace quorient::bus {
 
 /// The bus of several services in one process: one participant, one thread. A sample that a service publishes goes to the vendor, for
-/// everybody outside, and straight into the queues of the services beside it. What comes from outside is read once for all of them.
+/// all processes outside, and straight into the queues of the services beside it. What comes from outside is read once for all of them.
 ///
 /// - A subscriber gets every sample once, those of one writer in their order. A late subscriber gets the history of transient-local topics.
 /// - A queue keeps the newest 64 times the topic's depth, more than the vendor holds for as many writers.
