@@ -13,14 +13,10 @@ READ_BY_PEOPLE = ("README.md", "ARCHITECTURE.md", "KNOWN_ISSUES.md", "docs/")
 REFERENCES = "docs/references.md"
 SOURCES = (".cpp", ".hpp", ".h", ".c", ".py", ".idl", ".cmake", ".yaml", ".md", ".txt")
 
-# Rooms where a comment behind code may still begin with "of".
-LATER = ("common/fdi/", "common/messages/", "common/runtime/", "common/system/", "services/")
-
 # Documents that stood outside the project, and what took their place in docs/.
 FOREIGN_DOCUMENT = re.compile(r"\b(methods|cli|[Dd]esign|dds-notes|compose-notes)\.md\b")
 PAPER = re.compile(r"\bpapers? (00\d)((?:,? ?(?:and )?00\d)*)")
 LINK = re.compile(r"(?<!!)\[[^\]]*\]\(([^)\s]+)\)")
-COMMENT_LINE_OF = re.compile(r"^\s*(?://+!?|#|\*) Of\b")
 COMMENT_OF = re.compile(r"^\s*(?://+!?|#|\*) Of\b|\S.*\s//+<? [Oo]f\b")
 IGNORED = re.compile(r"build(-[^/]*)?/|(.*/)?__pycache__/")  # as .gitignore, where there is no git
 
@@ -97,8 +93,7 @@ def problems(root):
             if name.startswith(READ_BY_PEOPLE) and "/" not in name or name.startswith("docs/"):
                 found += long_sentences(text)
         else:
-            rule = COMMENT_LINE_OF if name.startswith(LATER) else COMMENT_OF
-            found += [f"line {number}: a comment begins with 'Of'" for number, line in enumerate(text.splitlines(), 1) if rule.search(line)]
+            found += [f"line {number}: a comment begins with 'Of'" for number, line in enumerate(text.splitlines(), 1) if COMMENT_OF.search(line)]
         if not name.startswith("docs/"):
             found += [f"cites {match}, which is no document of the project" for match in sorted(set(FOREIGN_DOCUMENT.findall(text)))]
         yield from (f"{name}: {problem}" for problem in found)

@@ -38,6 +38,7 @@ class Documents(unittest.TestCase):
             ("tools/a.hpp", "/// A method. [paper 009]\n"),
             ("tools/a.hpp", "/// Of a method that nobody calls the result is not kept.\n"),
             ("tools/a.hpp", "int frames = 0;  ///< of the window\n"),
+            ("services/a.hpp", "int frames = 0;  ///< of the window\n"),
             ("tools/a.hpp", "/// The closed form is in methods.md.\n"),
             ("tools/README.md", "As cli.md says.\n"),
         ]:

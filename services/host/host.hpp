@@ -45,7 +45,7 @@ Process process_of(const Settings& settings)
 /// What the program of one role says of itself.
 struct Role {
     std::string purpose;       ///< one sentence, for --help
-    std::string default_name;  ///< of its process in the system file; empty = --name is required
+    std::string default_name;  ///< its process's in the system file; empty = --name is required
     FindProcess find;
     std::vector<runtime::Switch> switches{};  ///< flags of this role alone
 };

@@ -44,7 +44,7 @@ private:
     AttitudeEvents events_;
     ResetOrders resets_;
     std::optional<attitude::Integrator> integrator_;  ///< from the first frame on
-    geometry::Axes axes_;                             ///< of integrator_
+    geometry::Axes axes_;                             ///< those of integrator_
     bool follows_ = true;                             ///< the present description is of these axes
     std::optional<VotedAttitude> first_voted_;        ///< newest that came before integrator_ was made
     std::optional<FaultVerdict> verdict_;             ///< newest of the lane's detector

@@ -19,7 +19,7 @@ public:
     /// What a stream has to send next.
     struct Next {
         Text text;                ///< nothing: the time is over, or the feed is closed
-        std::uint64_t number = 0; ///< of this message; the next call continues behind it
+        std::uint64_t number = 0; ///< this message's; the next call continues behind it
         bool joined = false;      ///< messages were skipped (or this is the first): the stream has to begin anew
     };
 

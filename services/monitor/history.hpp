@@ -18,7 +18,7 @@ struct Sample {
         std::array<double, max_axes> bound{};  ///< the newest
     };
 
-    std::int64_t wall_time_ns = 0;  ///< of the newest tick in it
+    std::int64_t wall_time_ns = 0;  ///< the newest tick's
     std::size_t lanes = 0;
     std::size_t axes = 0;
     double sigma_rad = not_known;

@@ -59,8 +59,8 @@ struct LaneTick {
 /// How one service is doing.
 struct ServiceTick {
     ServiceStatus status;
-    double age_s = 0;                ///< of the status
-    double rate_hz = not_known;        ///< of its publications, from the last two statuses
+    double age_s = 0;                ///< the status's
+    double rate_hz = not_known;        ///< at which it publishes, from the last two statuses
     std::uint32_t restarts = 0;      ///< seen by this monitor
 };
 

@@ -16,7 +16,7 @@ namespace quorient::monitor {
 /// What viewers may take from this process.
 struct ViewerLimits {
     std::size_t viewers = 32;                         ///< open at once; the next one is closed
-    std::size_t request_bytes = 64 * 1024;            ///< of one message from a viewer
+    std::size_t request_bytes = 64 * 1024;            ///< in one message from a viewer
     std::size_t waiting = 64;                         ///< messages that one viewer has not taken; what comes on top is dropped and counted
     std::chrono::milliseconds silence{15'000};        ///< a viewer that answers no ping for so long is closed
 };

@@ -15,8 +15,8 @@ namespace quorient::monitor {
 /// What clients may take from this process.
 struct Limits {
     std::size_t threads = 128;                         ///< one per open connection; a connection more is closed at once
-    std::size_t streams = 100;                         ///< of them, connections that stay open
-    std::size_t request_bytes = 64 * 1024;             ///< of one request
+    std::size_t streams = 100;                         ///< connections that stay open, among them
+    std::size_t request_bytes = 64 * 1024;             ///< in one request
     std::chrono::milliseconds request_patience{3000};  ///< for a whole request to arrive
     std::chrono::milliseconds write_patience{5000};    ///< for a client that does not read
     int send_buffer_bytes = 256 * 1024;

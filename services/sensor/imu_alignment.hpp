@@ -41,7 +41,7 @@ public:
     /// One interval on. @param now_ns  steady.
     void advance(std::int64_t now_ns);
 
-    std::int64_t begin_ns() const { return begin_ns_; }  ///< of the interval, on the common clock
+    std::int64_t begin_ns() const { return begin_ns_; }  ///< the interval's, on the common clock
     std::int64_t end_ns() const { return end_ns_; }
     const std::vector<Instrument>& instruments() const { return instruments_; }
 
@@ -51,7 +51,7 @@ public:
 private:
     struct Heard {
         ImuStream stream;
-        Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  ///< of the newest sample, for the lever arm
+        Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  ///< the newest sample's, for the lever arm
         std::int64_t rate_stamp_ns = 0;
         std::int64_t offset_ns = 0;  ///< stamp - arrival of the newest message, whether it was taken or not
         std::int64_t arrival_ns = 0;

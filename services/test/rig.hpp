@@ -145,7 +145,7 @@ public:
     unsigned verdicts() const { return verdicts_; }    ///< so far
     unsigned suspicions() const { return suspicions_; }  ///< verdicts so far whose state is SUSPECT
     unsigned attitudes() const { return attitudes_; }  ///< so far
-    const TruthState& truth() const { return truth_; }  ///< of the newest frame
+    const TruthState& truth() const { return truth_; }  ///< the newest frame's
 
     /// What was answered to this request, in order.
     std::vector<HealthEvent> answers(std::uint64_t request) const

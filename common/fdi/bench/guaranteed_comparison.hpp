@@ -14,7 +14,7 @@ struct Comparison {
     std::size_t empty = 0;            ///< by both
     std::size_t at_the_boundary = 0;  ///< within 1e-5 sigma of where some pair turns infeasible: not compared
     std::size_t emptiness_differs = 0;
-    double largest_difference = 0;  ///< of the ends of the intervals [unit of z]
+    double largest_difference = 0;  ///< between the ends of the intervals [unit of z]
 };
 
 /// @param bound  sigma, of the detector and the programs alike.

@@ -15,7 +15,7 @@ using namespace quorient;
 
 constexpr std::size_t frame_count = 256;
 constexpr double interval_s = 0.01;
-constexpr double noise_rad = 1e-5;  // of one frame's increment
+constexpr double noise_rad = 1e-5;  // one frame's increment has it
 
 geometry::SensorCluster cluster_of(const std::string& layout)
 {

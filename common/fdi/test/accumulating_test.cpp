@@ -20,7 +20,7 @@ namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180;
 constexpr double interval_s = 0.016;
-constexpr double rate_sigma = 0.25 * degree;  // of one axis, as the MIMU4444's
+constexpr double rate_sigma = 0.25 * degree;  // one axis's, as the MIMU4444's
 constexpr double range_rad_s = 2000 * degree;
 
 /// A real array as its recordings show it: noise at rest, and each instrument samples at an instant of its own that wanders.

@@ -10,12 +10,12 @@ namespace quorient::fdi {
 /// What sound instruments of one array differ by: standard deviations.
 struct Differences {
     double bias_deg_s = 0.7;
-    double gain = 0.008;          ///< of scale and of cross-axis terms
+    double gain = 0.008;          ///< errors of scale and cross-axis terms
     double delay_s = 0.4e-3;
-    double noise_deg_s = 0.1;     ///< of one sample
+    double noise_deg_s = 0.1;     ///< one sample's
     double quantum_deg_s = 0.061;
     double drift_deg_s = 0.004;   ///< random walk of the bias after one second
-    double jitter_s = 0.08e-3;    ///< of the sampling instants
+    double jitter_s = 0.08e-3;    ///< by which the sampling instants wander
     double own_vibration_deg_s = 0;  ///< amplitude of what each instrument feels alone, at 14 Hz
 };
 

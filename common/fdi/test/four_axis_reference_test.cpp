@@ -86,7 +86,7 @@ TEST(FourAxisReference, the_predictor_matches_the_worked_cases)
 /// Tables 2-4: the body increments are truncated, projected, and sensor G2 scaled by 0.8 in the frame that ends at 10.1 s.
 struct Table {
     const char* layout;
-    std::array<double, 4> modulus;  ///< of T1..T4, the misprints corrected (methods of paper 003)
+    std::array<double, 4> modulus;  ///< for T1..T4, the misprints corrected (methods of paper 003)
 };
 
 class PaperTables : public ::testing::TestWithParam<Table> {

@@ -36,7 +36,7 @@ public:
         return [seconds](double t) -> Eigen::Vector3d { return t < seconds ? rest(t) : Eigen::Vector3d(flight(t - seconds) * std::min(1.0, t - seconds)); };
     }
 
-    std::function<Eigen::Vector3d(double)> motion = flight_after(2);  ///< of the body [deg/s]
+    std::function<Eigen::Vector3d(double)> motion = flight_after(2);  ///< the body's [deg/s]
     std::function<void(std::uint64_t sequence, Rates&)> spoil = [](std::uint64_t, Rates&) {};
 
     /// The next measurement; NaN where an axis has no data.

@@ -13,10 +13,10 @@ struct AxisErrors {
     double least_row_error = 0.01;   ///< length of the error of scale and direction, even between these two
     double most_row_error = 0.03;
     double delay_s = 0.4e-3;         ///< standard deviation
-    double noise_deg_s = 0.1;        ///< of one sample
+    double noise_deg_s = 0.1;        ///< one sample's
     double quantum_deg_s = 0.061;
     double drift_deg_s = 0.004;      ///< random walk of the bias after one second
-    double jitter_s = 0.08e-3;       ///< of the sampling instants
+    double jitter_s = 0.08e-3;       ///< by which the sampling instants wander
     double vibration_deg_s = 12;     ///< amplitude of what all axes feel, at 17 Hz and 31 Hz
     double own_vibration_deg_s = 0.3;  ///< amplitude of what each axis feels alone, at 14 Hz
 };

@@ -71,7 +71,7 @@ protected:
         return codes;
     }
 
-    std::string text_;  ///< of the last event that codes() has returned
+    std::string text_;  ///< that of the last event that codes() has returned
     bool adopted_ = false;  ///< the next verdicts are another detector's
 
 private:

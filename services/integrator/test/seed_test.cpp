@@ -16,7 +16,7 @@ namespace {
 using test::Rig;
 
 constexpr std::uint32_t faulty = 0b0010;
-constexpr double error_rad = 5e-4;     // of a bias of 0.05 rad/s in two frames
+constexpr double error_rad = 5e-4;     // by a bias of 0.05 rad/s in two frames
 constexpr double rounding_rad = 2e-6;  // and the sensors' resolution
 constexpr double bridged_rad = 1e-5;   // and the coning in a few lost frames
 

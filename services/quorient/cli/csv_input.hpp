@@ -13,7 +13,7 @@
 namespace quorient::cli {
 
 struct CsvOptions {
-    std::optional<std::size_t> columns = std::nullopt;  ///< of every row; absent: as many as the first row has
+    std::optional<std::size_t> columns = std::nullopt;  ///< in every row; absent: as many as the first row has
     bool allow_non_finite = false;                      ///< `nan` and `inf` are values
 };
 

@@ -337,7 +337,7 @@ int Program::run_verb(std::vector<std::string> arguments)
         return exit.code;
     } catch (const CLI::ParseError& error) {
         return app_->exit(error) == 0 ? ExitCode::done : ExitCode::refused;
-    } catch (const std::system_error& error) {  // of a file or of standard output
+    } catch (const std::system_error& error) {  // from a file or standard output
         runtime::say(error.what());
         return ExitCode::refused;
     }

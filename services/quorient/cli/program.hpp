@@ -40,7 +40,7 @@ struct Exit {
 struct NumberOption {
     std::string verb;
     std::string option;
-    settings::Bounds bounds;  ///< of each number; what is not finite is always refused
+    settings::Bounds bounds;  ///< for each number; what is not finite is always refused
 };
 
 /// One option, flag or positional argument of a verb: what may stand in it. A handle; copies mean the same option.

@@ -10,7 +10,7 @@ namespace quorient::cli {
 namespace {
 
 constexpr double plot_width = 900;
-constexpr double plot_height = 420;  // of one chart
+constexpr double plot_height = 420;  // one chart's
 constexpr double plot_left = 80;
 constexpr double plot_right = 210;  // the legend's room
 constexpr double plot_top = 40;

@@ -7,7 +7,7 @@ namespace quorient::cli {
 
 namespace {
 
-constexpr double most_decades = 5;  // of a logarithmic scale: what lies below stands at its foot
+constexpr double most_decades = 5;  // on a logarithmic scale: what lies below stands at its foot
 
 }  // namespace
 

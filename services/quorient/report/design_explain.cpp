@@ -41,7 +41,7 @@ struct Compared {
     std::string words;
     std::size_t axes = 0;
     Figures figures;
-    std::string name;  ///< of the layout it is, turned; empty: none
+    std::string name;  ///< the layout that it is, turned; empty: none
 };
 
 /// rms error of the body vector, in the noise of one axis.

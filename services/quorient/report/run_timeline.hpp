@@ -40,9 +40,9 @@ struct RunMoment {
         AxisMask provisional = 0;
     };
 
-    Extent error_rad;             ///< of the voted attitude, against the truth
+    Extent error_rad;             ///< the voted attitude's, against the truth
     Extent without_rollback_rad;  ///< as RunObserver::without_rollback()
-    std::array<Extent, 3> roll_pitch_yaw_deg;  ///< of the voted attitude; runs on beyond 180
+    std::array<Extent, 3> roll_pitch_yaw_deg;  ///< the voted attitude's; runs on beyond 180
     std::array<Lane, max_lanes> lane{};
     AxisMask faulty = 0;                  ///< by the truth
     VoteLevel level = VoteLevel::unknown; ///< the gravest
@@ -74,7 +74,7 @@ private:
 
     const system::System& system_;
     std::uint64_t epoch_ = 0;
-    double shift_s_ = 0;  ///< of the newest epoch
+    double shift_s_ = 0;  ///< the newest epoch's
     double newest_s_ = 0;
     double begin_s_ = 0;
     double moment_s_;

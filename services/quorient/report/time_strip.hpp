@@ -53,16 +53,16 @@ struct TimeSpan {
 /// A diagram over time. Places across it are shares of its width, so that letters and heights keep their size [px] at any width.
 struct Strip {
     std::string title;
-    std::string unit;  ///< of the values; empty = none
+    std::string unit;  ///< the values' unit; empty = none
     double left = 0;
-    double height = 0;  ///< of the body
+    double height = 0;  ///< the body's
     std::string body;
 };
 
 /// How a strip of bands is drawn.
 struct BandLook {
     Spacing spacing = Spacing::linear;
-    double height = 110;  ///< of the plot itself
+    double height = 110;  ///< the plot's own
 };
 
 Strip band_strip(const std::string& title, const std::string& unit, const TimeSpan& span, const std::vector<Band>& bands, const BandLook& look = {});

@@ -102,7 +102,7 @@ TEST_F(RunPicture, shows_the_gravest_level_of_a_time_by_the_first_sample_of_each
 {
     for (std::uint64_t sequence = 0; sequence < 2000; ++sequence) {
         timeline_->on_voted(voted(sequence, sequence == 1000 ? VoteLevel::single : VoteLevel::full));
-        timeline_->on_voted(voted(sequence, VoteLevel::lost));  // of a voter that is starting
+        timeline_->on_voted(voted(sequence, VoteLevel::lost));  // from a voter that is starting
     }
     int single = 0;
     for (const auto& moment : timeline_->moments()) {

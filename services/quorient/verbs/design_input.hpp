@@ -12,7 +12,7 @@ namespace quorient::cli {
 /// A brief as read from a file, and where each demand stands in it.
 struct BriefFile {
     design::Brief brief;
-    std::string keep;                          ///< of `keep`: a layout or a file of axes, not loaded yet
+    std::string keep;                          ///< the value of `keep`: a layout or a file of axes, not loaded yet
     std::map<std::string, std::string> place;  ///< by key: "file:line:column"
 };
 

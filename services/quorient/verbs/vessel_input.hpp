@@ -12,8 +12,8 @@ namespace quorient::cli {
 /// A plant with its observers, as a file says it; what the file leaves out is the paper's.
 struct VesselInput {
     simulation::VesselModel model;
-    std::vector<fdi::Poles> directional_poles{{-3, -4}, {-0.5, -4}};  ///< of each channel: along its fault, other
-    std::vector<fdi::Poles> blind_poles{{-3, -4}};                    ///< of each channel, or one set for all
+    std::vector<fdi::Poles> directional_poles{{-3, -4}, {-0.5, -4}};  ///< for each channel: along its fault, other
+    std::vector<fdi::Poles> blind_poles{{-3, -4}};                    ///< for each channel, or one set for all
     std::vector<double> sigma;
     double model_error = 0;
     double false_alarm_probability = fdi::default_false_alarm_probability;

@@ -32,7 +32,7 @@ struct VesselRow {
     double rudder_rad = 0;
     Eigen::VectorXd state;
     Eigen::VectorXd sample;                 ///< with noise and faults
-    std::vector<Eigen::VectorXd> residual;  ///< of each channel's observer
+    std::vector<Eigen::VectorXd> residual;  ///< each channel's observer's
     std::vector<double> metric;             ///< likewise
     fdi::Assessment assessment;
 };

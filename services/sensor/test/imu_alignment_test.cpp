@@ -14,8 +14,8 @@ using Fault = ImuAlignment::Fault;
 constexpr std::int64_t ms = 1'000'000;
 constexpr double interval_s = 0.01;
 constexpr std::int64_t interval_ns = 10 * ms;
-constexpr std::int64_t period_ns = 4 * ms;                       // of every IMU: 250 Hz
-constexpr std::int64_t ros_time_ns = 1'700'000'000'000'000'000;  // of the IMUs' clock where the steady clock is 0
+constexpr std::int64_t period_ns = 4 * ms;                       // every IMU's: 250 Hz
+constexpr std::int64_t ros_time_ns = 1'700'000'000'000'000'000;  // the IMUs' clock where the steady clock is 0
 
 /// The true body rate, and its integral.
 Eigen::Vector3d rate_at(double s)

@@ -77,7 +77,7 @@ private:
     /// What one window says.
     struct Finding {
         double certainty = 0;  ///< largest sqrt(T / threshold); above 1 is suspicious
-        double second = 0;     ///< of the next hypothesis
+        double second = 0;     ///< the next hypothesis's
         AxisMask best = 0;
         AxisMask runner_up = 0;
         std::size_t window = 0;

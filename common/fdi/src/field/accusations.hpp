@@ -64,8 +64,8 @@ private:
         bool named = false;                 ///< until it is excluded
         std::uint64_t left_out_until = 0;
         std::uint64_t onset = never;        ///< sequence, of the present contradiction or of the named fault
-        double certainty = 0;               ///< of the named fault
-        std::array<std::uint64_t, most_returns> begun{};  ///< of the latest contradictions, ring
+        double certainty = 0;               ///< the named fault's
+        std::array<std::uint64_t, most_returns> begun{};  ///< when the latest contradictions began, ring
         std::size_t contradictions = 0;
     };
 

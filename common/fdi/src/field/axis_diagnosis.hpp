@@ -9,7 +9,7 @@ namespace quorient::fdi::field {
 /// What is known beside the fit.
 struct DiagnosisContext {
     bool rested = false;     ///< the bias was known
-    double usual_noise = 0;  ///< of one frame [rad/s]
+    double usual_noise = 0;  ///< one frame's [rad/s]
     Parameters reference;    ///< standard deviations of what the others may be wrong by
 };
 

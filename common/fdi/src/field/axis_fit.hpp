@@ -34,8 +34,8 @@ public:
         Estimate gain;      ///< along h: 1 where it is sound
         Estimate delay;     ///< s
         Estimate turned;    ///< angle between h and the direction that the axis measures along [rad]
-        double length = 1;  ///< of that direction, 1 where it is sound
-        double noise = 0;   ///< of one frame [rad/s]
+        double length = 1;  ///< that direction's, 1 where it is sound
+        double noise = 0;   ///< one frame's [rad/s]
     };
     const Solution& solution() const { return solution_; }
 
@@ -55,7 +55,7 @@ private:
     double squares_ = 0;
     Parameters estimate_ = Parameters::Zero();
     Covariance covariance_ = Covariance::Zero();
-    double variance_ = std::numeric_limits<double>::infinity();  ///< of one frame, unknown at first
+    double variance_ = std::numeric_limits<double>::infinity();  ///< one frame's, unknown at first
     std::size_t frames_ = 0;
     std::size_t run_ = 0;  ///< frames in a row that are far off
     double run_sum_ = 0;

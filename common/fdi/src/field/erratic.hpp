@@ -21,7 +21,7 @@ public:
     struct Finding {
         std::size_t instrument;
         std::size_t component;
-        double share;  ///< of the frames
+        double share;  ///< as a part of the frames
     };
     std::optional<Finding> finding(InstrumentSet compared) const;
 

@@ -8,7 +8,7 @@ namespace quorient::fdi::field {
 
 /// One frame as it is compared: what every instrument says of the body's rate, in one common frame.
 struct Frame {
-    std::uint64_t sequence = 0;    ///< of its first measurement
+    std::uint64_t sequence = 0;    ///< its first measurement's
     double interval_s = 0;
     bool follows = false;          ///< no measurement is missing between this frame and the one before
     InstrumentSet present;         ///< all axes valid and finite

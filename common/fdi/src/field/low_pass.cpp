@@ -46,7 +46,7 @@ void SlowPart::add(std::size_t component, const Input& input, InstrumentSet comp
         regressors_[component](static_cast<Eigen::Index>(p)) = filter.follow(motion(static_cast<Eigen::Index>(p)), rate_);
     }
     moving_[component] = true;
-    const double passed = std::sqrt(std::min(1.0, rate_ / 4));  // of white noise
+    const double passed = std::sqrt(std::min(1.0, rate_ / 4));  // the share of white noise that passes
     Parameters& slow = regressors_[component];
     slow(bias) = 1;
     for (Eigen::Index k = 0; k < 3; ++k) slow(gain_x + k) = dead_zone(slow(gain_x + k), std::max(rate_dead_zone * input.rate_noise(k) * passed, least_rate));

@@ -30,9 +30,9 @@ public:
 
     struct Input {
         Eigen::Vector3d rate;       ///< consensus [rad/s]
-        double acceleration;        ///< of the component [rad/s^2]
+        double acceleration;        ///< the component's [rad/s^2]
         double noise;               ///< standard deviation of one frame [rad/s], of the component
-        Eigen::Vector3d rate_noise; ///< of each component
+        Eigen::Vector3d rate_noise; ///< each component's
     };
 
     /// @param deviations  learned differences included

@@ -23,7 +23,7 @@ struct MatchedFilters::Window {
     std::size_t component;
     std::size_t frames;
     InstrumentSet compared;  ///< through the whole window
-    std::size_t others;      ///< of them, for each
+    std::size_t others;      ///< for each of them
     bool lasting;
 };
 
@@ -31,7 +31,7 @@ struct MatchedFilters::Window {
 struct MatchedFilters::Contrast {
     double difference;
     double variance;
-    double scatter;  ///< of the others
+    double scatter;  ///< the others'
     std::size_t others;
 };
 

@@ -24,9 +24,9 @@ public:
     /// @param compared  instruments that take part
     void reckon(std::size_t component, double motion, InstrumentSet compared);
 
-    double others(std::size_t component, std::size_t m) const { return others_[component][m]; }  ///< of a pair without m [(rad/s)^2]
+    double others(std::size_t component, std::size_t m) const { return others_[component][m]; }  ///< a pair's without m [(rad/s)^2]
     double own(std::size_t component, std::size_t m) const { return own_[component][m]; }
-    double typical(std::size_t component) const { return typical_[component]; }  ///< of the median pair
+    double typical(std::size_t component) const { return typical_[component]; }  ///< the median pair's
 
     /// Whether the noise of the last seconds stays below these: A [(rad/s)^2] and B, of every pair of compared instruments. A below the floor is not seen.
     bool is_within(double standing, double moving, InstrumentSet compared) const;
@@ -62,7 +62,7 @@ private:
     static constexpr std::size_t nobody = std::numeric_limits<std::size_t>::max();
 
     std::size_t count_;
-    double floor_;  ///< of A [(rad/s)^2]
+    double floor_;  ///< A is at least this [(rad/s)^2]
     TwoTermNoise::Rates rate_;
     double mean_rate_;
     std::array<std::array<Pair, max_instruments * max_instruments>, component_count> pairs_;  ///< i < j

@@ -12,7 +12,7 @@
 namespace quorient::fdi::field {
 
 inline constexpr std::size_t max_instruments = InstrumentArray::max_instruments;
-inline constexpr std::size_t max_members = max_axes;  ///< of a comparison of any kind: instruments or single axes
+inline constexpr std::size_t max_members = max_axes;  ///< in a comparison of any kind: instruments or single axes
 inline constexpr std::size_t component_count = 3;  ///< x, y, z of the common frame
 
 /// What a sound instrument may differ by from the others, per component: e = bias + gains' omega + delay * d omega/dt.

@@ -10,7 +10,7 @@ namespace {
 /// The frame itself and the three after it, whose derivatives it spoils.
 constexpr unsigned frames_blinded = 4;
 
-constexpr double borne_out_at = 0.8;  ///< of the range
+constexpr double borne_out_at = 0.8;  ///< as a part of the range
 
 /// An axis touches a component that it has this share in; two axes point alike above the second one.
 constexpr double touching = 0.1;

@@ -81,7 +81,7 @@ private:
     unsigned learnt_ = 0;
     bool predicted_ = false;
     ModulusPrediction prediction_;
-    double uncertainty_ = 0;  ///< of the prediction
+    double uncertainty_ = 0;  ///< the prediction's
     Identity observed_;       ///< the frame that it is for
     unsigned measured_ = 0;   ///< predictions that were compared
     double missed_ = 0;       ///< mean square of what predictions missed beyond their uncertainty

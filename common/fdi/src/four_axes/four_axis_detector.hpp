@@ -45,7 +45,7 @@ public:
     void reset() final;
 
     const Eigen::Vector4d& parity_vector() const { return parity_vector_; }           ///< v, unit norm
-    double bound() const { return bound_; }                                           ///< of |v'z| [unit of z]
+    double bound() const { return bound_; }                                           ///< for |v'z| [unit of z]
     const geometry::Triad& triad(std::size_t index) const { return triads_[index]; }  ///< T1..T4, lexicographic
 
 protected:
@@ -55,9 +55,9 @@ protected:
         Eigen::Vector4d parity_vector;
         Eigen::Matrix<double, 3, 4> least_squares;
         double bound = 0;
-        double parity_sigma = 0;    ///< of v'z by noise alone
+        double parity_sigma = 0;    ///< v'z has it by noise alone
         double parity_quantum = 0;  ///< sum |v_i| quantum_i
-        Eigen::Vector4d variance;   ///< of one increment, noise and quantisation
+        Eigen::Vector4d variance;   ///< one increment's, noise and quantisation
     };
 
     /// One frame, seen through all triads.
@@ -119,7 +119,7 @@ private:
     unsigned quiet_frames_ = 0;  ///< the latest of them, one after another, without suspicion
     std::array<Frame, release_frames> quiet_;
     unsigned disputed_ = 0;  ///< frames to come until an excluded axis that agrees in all of them counts as one that agrees
-    double expected_ = 0;    ///< of the excluded axis, by the other three [unit of z]
+    double expected_ = 0;    ///< the excluded axis's value, by the other three [unit of z]
 };
 
 }  // namespace quorient::fdi

@@ -91,7 +91,7 @@ private:
     double parity_sigma_;
     double parity_quantum_;
     double triad_sigma_;  ///< rms length of the error of one triad's body vector by noise and quantisation [unit of z]
-    std::array<std::array<double, longest>, tried_every_frame> weights_{};  ///< of the one-frame predictions
+    std::array<std::array<double, longest>, tried_every_frame> weights_{};  ///< for the one-frame predictions
     std::array<Eigen::Vector3d, tried_every_frame> one_frame_;
     std::array<double, tried_every_frame> error_{};  ///< squared, forgetting
     std::array<Eigen::Vector3d, history_length> body_;

@@ -18,7 +18,7 @@ namespace quorient::fdi {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double negligible_weight = 1e-9;  // of a weight among weights of norm one
+constexpr double negligible_weight = 1e-9;  // a smaller weight among weights of norm one counts as 0
 
 Eigen::Index at(std::size_t axis)
 {

@@ -87,7 +87,7 @@ private:
 
     struct FaultSet {
         AxisMask without = 0;
-        std::uint8_t rank = 0;  ///< of the rows that are left
+        std::uint8_t rank = 0;  ///< the rank of the rows that are left
         std::uint8_t basis_count = 0;
         std::array<std::uint8_t, 56> basis{};
     };
@@ -112,7 +112,7 @@ private:
     geometry::AxisVector bound_;
     unsigned max_faults_;
     std::optional<double> configured_threshold_;
-    std::optional<Eigen::Vector3d> direction_;  ///< of the additional interval in details()
+    std::optional<Eigen::Vector3d> direction_;  ///< for the additional interval in details()
     double threshold_ = 0;
     double largest_bound_ = 0;
 

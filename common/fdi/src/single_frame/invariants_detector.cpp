@@ -61,7 +61,7 @@ InvariantsDetector::InvariantsDetector(const DetectorSettings& settings, const g
 
 void InvariantsDetector::form(AxisMask working)
 {
-    constexpr double negligible = 1e-9;  // of a weight among weights of norm one
+    constexpr double negligible = 1e-9;  // a smaller weight among weights of norm one counts as 0
     projector_ = geometry::ParitySpace(cluster().axes, working).projector();
     quadruples_.clear();
     reads_.clear();

@@ -11,7 +11,7 @@ namespace quorient::fdi {
 
 namespace {
 
-constexpr double unseen = 1e-9;  ///< of a diagonal element of the projector: this axis can be judged no longer
+constexpr double unseen = 1e-9;  ///< a smaller diagonal element of the projector: this axis can be judged no longer
 
 /// Residual and projector of the axes that are still in the mean. [paper 002]
 struct Mean {

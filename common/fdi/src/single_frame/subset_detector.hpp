@@ -35,7 +35,7 @@ class SubsetDetector final : public FrameDetector {
 public:
     static constexpr std::size_t max_sets = 20'000;
     static constexpr double default_margin = 9;  ///< three sigma between the best explanation and the next
-    static constexpr double material = 0.2;      ///< of a named fault: below, a further fault is no reason for doubt
+    static constexpr double material = 0.2;      ///< for a named fault: below, a further fault is no reason for doubt
 
     struct Score {
         AxisMask axes = 0;
@@ -58,7 +58,7 @@ private:
         std::uint8_t rank = 0;
         std::uint32_t member = 0;  ///< first of its independent axes in members_
         std::uint32_t weight = 0;  ///< first of the rows of L^-1 in weights_, (P_ww = L L'), each as long as its place
-        double visibility = 0;     ///< of one more fault: what one of size 1 leaves of S_w at least; 0 where none is allowed or seen
+        double visibility = 0;     ///< what one more fault of size 1 leaves of S_w at least; 0 where none is allowed or seen
     };
 
     SubsetDetector(const geometry::SensorCluster& cluster, geometry::AxisVector sigma, const DetectorSettings& settings);
@@ -90,7 +90,7 @@ private:
     std::vector<std::uint8_t> members_;
     std::vector<double> weights_;
 
-    geometry::AxisVector residual_;  ///< of the frame, over sigma
+    geometry::AxisVector residual_;  ///< the frame's, over sigma
     double sum_of_squares_ = 0;
     std::vector<double> left_;  ///< S_w of every set tried
     std::array<Score, max_candidates> best_{};

@@ -81,7 +81,7 @@ void VotingDetector::set_radii()
     if (tolerance_ > 0 || triads_.empty()) return;
     const double quantile = std::sqrt(chi_square_quantile(3, pfa_ / static_cast<double>(triads_.size())));
     for (std::size_t t = 0; t < triads_.size(); ++t) {
-        Eigen::Matrix3d root = triads_[t].body_from_axes;  // of the covariance of the estimate
+        Eigen::Matrix3d root = triads_[t].body_from_axes;  // a root of the covariance of the estimate
         for (Eigen::Index k = 0; k < 3; ++k) root.col(k) *= sigma_(static_cast<Eigen::Index>(triads_[t].axis[static_cast<std::size_t>(k)]));
         const Eigen::Matrix3d covariance = root * root.transpose();
         radius_[t] =

@@ -45,9 +45,9 @@ private:
     geometry::AxisVector sigma_;
 
     std::vector<geometry::Triad> triads_;
-    std::vector<double> radius_;  ///< of each triad; half the tolerance where that is configured
+    std::vector<double> radius_;  ///< each triad's; half the tolerance where that is configured
     std::vector<Eigen::Vector3d> estimate_;
-    std::vector<AxisMask> reads_;  ///< of each pair of triads, (0,1), (0,2), …
+    std::vector<AxisMask> reads_;  ///< for each pair of triads, (0,1), (0,2), …
     std::vector<std::uint8_t> passed_;
     std::size_t passed_count_ = 0;
     double largest_radius_ = 0;

@@ -39,7 +39,7 @@ public:
     struct Input {
         const PerAxis& rates;      ///< biases of the start taken out [rad/s]
         AxisSet compared;          ///< take part in the comparison
-        const AxisParity& parity;  ///< of those that have data in this frame
+        const AxisParity& parity;  ///< for those that have data in this frame
         bool learns = false;
     };
 

@@ -13,7 +13,7 @@ struct AxisFilters::Window {
     const AxisSums& sums;
     const AxisWindows& ring;
     const Allowance& allowance;
-    const AxisParity& parity;  ///< of the axes that are compared through the whole window
+    const AxisParity& parity;  ///< for the axes that are compared through the whole window
     PerAxis biases;            ///< residual of the sums with a constant template, clipped or not
     PerAxis unclipped;
     std::size_t frames;

@@ -7,7 +7,7 @@ namespace quorient::fdi::skewed {
 
 /// One frame as it is compared: what every axis says.
 struct AxisFrame {
-    std::uint64_t sequence = 0;  ///< of its first measurement
+    std::uint64_t sequence = 0;  ///< its first measurement's
     double interval_s = 0;
     bool follows = false;        ///< no measurement is missing between this frame and the one before
     AxisSet present;             ///< valid and finite

@@ -33,11 +33,11 @@ public:
 
 private:
     std::size_t count_;
-    double floor_;  ///< of A [(rad/s)^2]
+    double floor_;  ///< A is at least this [(rad/s)^2]
     field::TwoTermNoise::Rates rate_;
     double mean_rate_;
-    std::array<field::TwoTermNoise, max_axes> without_;  ///< of the parity without this axis
-    std::array<field::TwoTermNoise, max_axes> along_;    ///< of the parity along this axis
+    std::array<field::TwoTermNoise, max_axes> without_;  ///< for the parity without this axis
+    std::array<field::TwoTermNoise, max_axes> along_;    ///< for the parity along this axis
     PerAxis motion_without_{};
     PerAxis motion_along_{};
     PerAxis mean_{};

@@ -6,7 +6,7 @@ namespace quorient::fdi::skewed {
 
 bool AxisSaturation::borne_out(std::size_t axis, const AxisFrame& frame, AxisSet compared, const Eigen::Vector3d& rate) const
 {
-    constexpr double borne_out_at = 0.8;  // of the range
+    constexpr double borne_out_at = 0.8;  // as a part of the range
     const auto direction = cluster_.axes.row(static_cast<Eigen::Index>(axis));
     if (std::abs(direction.dot(rate)) > borne_out_at * cluster_.range(static_cast<Eigen::Index>(axis))) return true;
     AxisSet others = frame.near_range & compared;

@@ -76,7 +76,7 @@ private:
     skewed::AxisComparison comparison_;
     skewed::AxisFilters filters_;
     field::Accusations accusations_;
-    skewed::AxisParity parity_;  ///< of the latest set
+    skewed::AxisParity parity_;  ///< for the latest set
 
     AxisSet excluded_;
     field::ThreeFrames<Pending> pending_;

@@ -54,7 +54,7 @@ private:
         bool known = false;
         unsigned repeats = 0;
         double seconds = 0;
-        double lowest_high = 0;  ///< of what the others said during the run: all of them were below, above
+        double lowest_high = 0;  ///< what the others measured during the run: all of them were below, above
         double highest_low = 0;
         bool compared = false;
         bool independent = true;                   ///< every comparison survives a fault of any one of the others
@@ -64,7 +64,7 @@ private:
     /// How an axis usually behaves.
     struct Habit {
         double quantum = 0;         ///< least step so far; 0 = none yet
-        double variance = 0;        ///< of its differences to the others, from frame to frame
+        double variance = 0;        ///< that of its differences to the others, from frame to frame
         double last_difference = 0;
         unsigned frames = 0;
     };
@@ -85,7 +85,7 @@ private:
     OthersView others_;
     AxisMask broken_ = 0;  ///< in the newest frame
     AxisMask trusted_ = 0;  ///< witnesses in the newest frame
-    std::uint64_t sequence_ = 0;  ///< of the newest frame
+    std::uint64_t sequence_ = 0;  ///< the newest frame's
     AxisMask absent_ = 0;
     std::array<std::uint32_t, max_axes> missing_{};  ///< bit k = without data k frames ago
     std::array<Run, max_axes> run_{};

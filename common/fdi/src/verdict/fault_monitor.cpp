@@ -36,9 +36,9 @@ struct FaultMonitor::Watch {
     explicit Watch(const VerdictMachine& its_machine) : machine(its_machine) {}
 
     VerdictMachine machine;
-    std::optional<AxisHealth> health;                          ///< of axes that are directions in space
-    std::optional<Readmission> readmission;                    ///< of such axes, where axes may return by themselves
-    std::optional<ObserverReadmission> observer_readmission;  ///< of other channels, likewise
+    std::optional<AxisHealth> health;                          ///< for axes that are directions in space
+    std::optional<Readmission> readmission;                    ///< for such axes, where axes may return by themselves
+    std::optional<ObserverReadmission> observer_readmission;  ///< for other channels, likewise
     std::array<AxisDiagnosis, max_axes> known{};  ///< the latest diagnosis of each isolated axis
     std::array<Diagnosis, max_axes> proved{};     ///< what its own values proved before it was isolated
 };

@@ -92,7 +92,7 @@ private:
     int least_axes_;
     FaultVerdict verdict_;
     bool started_ = false;
-    std::uint64_t frames_ = 0;             ///< of this epoch
+    std::uint64_t frames_ = 0;             ///< in this epoch
     std::uint64_t first_unexplained_ = 0;  ///< the frame after the last one that was judged healthy
     std::array<Evidence, max_window> window_{};
     unsigned window_size_ = 0;

@@ -16,7 +16,7 @@ namespace quorient::system {
 /// A system file as it stands: every key with the value that holds.
 struct File {
     std::string name;
-    ProcessSettings process;  ///< of every process that does not say otherwise
+    ProcessSettings process;  ///< for every process that does not say otherwise
     UnitSection unit;
     SourceSection source;
     runtime::OrderSettings commands;

@@ -37,7 +37,7 @@ struct SourceSection {
     std::optional<simulation::Quantize> quantize;
     MotionSection motion;
 
-    std::vector<std::string> files;  ///< of a log, from the folder of the system file
+    std::vector<std::string> files;  ///< the log's, from the folder of the system file
     std::optional<double> rest_s;
     std::string calibration;
     double from_s = 0;

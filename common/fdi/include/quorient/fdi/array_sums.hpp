@@ -50,7 +50,7 @@ public:
         std::array<Eigen::Matrix3d, InstrumentArray::max_instruments> information;  ///< R_m^-1
         std::array<Eigen::Vector3d, InstrumentArray::max_instruments> value;        ///< y_m
         Eigen::Matrix3d weight;                                                     ///< W
-        Eigen::Matrix3d covariance;                                                 ///< of y
+        Eigen::Matrix3d covariance;                                                 ///< y's
         Eigen::Vector3d fused;                                                      ///< y
         std::array<Eigen::Matrix3d, InstrumentArray::max_instruments> contrast;     ///< (cov (y_m - y))^-1 = (R_m - cov y)^-1
 

@@ -56,7 +56,7 @@ struct Assessment {
     AxisMask provisional = 0;                 ///< contradicted in this frame: to be left out at once, though it may pass
     std::uint64_t provisional_from = never;   ///< first sequence to be left out
     AxisMask degraded = 0;                    ///< noisier or later than others, with no harm to the attitude
-    std::array<AxisDiagnosis, max_axes> diagnosis{};  ///< of axes that are left out, named or excluded
+    std::array<AxisDiagnosis, max_axes> diagnosis{};  ///< for axes that are left out, named or excluded
     bool saturated = false;                   ///< all instruments are at their range: the rate is unknown, nobody is faulty
     std::array<double, max_axes> residual{};  ///< in the unit of the measurement
     std::array<double, max_axes> bound{};

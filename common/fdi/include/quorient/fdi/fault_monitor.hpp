@@ -54,7 +54,7 @@ public:
     FaultDiagnosis diagnosis() const;
 
     const Detector& detector() const { return *detector_; }
-    const Assessment& assessment() const { return assessment_; }  ///< of the newest frame
+    const Assessment& assessment() const { return assessment_; }  ///< the newest frame's
 
 private:
     struct Watch;  // what stands behind the method: fault_monitor.cpp

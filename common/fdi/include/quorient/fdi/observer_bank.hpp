@@ -25,7 +25,7 @@ std::string_view to_string(ObserverScheme scheme);
 struct ObserverSettings {
     LinearPlant plant;
     ObserverScheme scheme = ObserverScheme::blind;
-    std::vector<Poles> poles;   ///< of each channel's observer; one set for all is enough. directional: {along the fault, other}
+    std::vector<Poles> poles;   ///< one set for each channel's observer, or one for all. directional: {along the fault, other}
     std::vector<double> sigma;  ///< noise of one sample of each channel, in its unit; one for all is enough; empty = 0
     double model_error = 0;
     double false_alarm_probability = default_false_alarm_probability;
@@ -113,12 +113,12 @@ private:
         Outputs residual;
         Outputs limit;
         Outputs noise_limit;      ///< z sigma_r
-        StateMatrix covariance;   ///< of the error
+        StateMatrix covariance;   ///< the error's
         StateMatrix disturbance;  ///< what one interval of noise adds to it
         Outputs direction;        ///< l / |l|; directional
         double metric_noise_limit = 0;
         double metric_limit = 0;
-        Sensitivity sensitivity;  ///< of the error: h/2 d/dh, then p d/dp for every entry of A and B that is not 0
+        Sensitivity sensitivity;  ///< the error's: h/2 d/dh, then p d/dp for every entry of A and B that is not 0
     };
 
     /// One entry of A (column < n) or B that may be wrong.
@@ -146,7 +146,7 @@ private:
     double model_error_;
     std::optional<double> threshold_;
     double z_ = 0;
-    Outputs variance_;                   ///< of one sample's noise
+    Outputs variance_;                   ///< one sample's noise has it
     std::uint64_t settling_frames_ = 0;  ///< from a start that is wrong to 1/1000 of it, in all observers
     bool state_is_measured_ = false;     ///< the samples of all channels determine the whole state
     std::uint64_t attribution_frames_ = 0;

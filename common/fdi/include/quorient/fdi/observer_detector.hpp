@@ -68,10 +68,10 @@ private:
     double margin_;
     AxisMask excluded_ = 0;
     std::optional<Identity> last_;
-    AxisMask valid_ = 0;                 ///< of the newest frame
+    AxisMask valid_ = 0;                 ///< the newest frame's
     std::uint64_t frames_ = 0;           ///< since the observers started
-    std::uint64_t settling_frames_ = 0;  ///< of them, those that show nothing yet
-    std::uint64_t naming_frames_ = 0;    ///< of them, those that name nobody yet (blind)
+    std::uint64_t settling_frames_ = 0;  ///< those among them that show nothing yet
+    std::uint64_t naming_frames_ = 0;    ///< those among them in which no fault is named yet (blind)
     std::uint64_t alarm_since_ = 0;      ///< directional: the sequence with which alarm_frames_ left 0
     std::uint64_t alarm_frames_ = 0;     ///< directional: up with every alarm, down with every frame without
     ObserverBank::Outputs samples_;

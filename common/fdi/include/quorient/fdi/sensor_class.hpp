@@ -27,10 +27,10 @@ struct ClassFigures {
     double gain_floor;                   ///< likewise
     double bias_wander_rad_s_root_s;     ///< random walk of the bias, after one second
     double largest_bias_rad_s;           ///< beyond it: outside the class
-    double largest_drift_rad_s;          ///< of the bias since a resting start; beyond it: outside the class
+    double largest_drift_rad_s;          ///< the bias since a resting start drifts no further; beyond it: outside the class
     double largest_gain_error;           ///< beyond it: outside the class
     double noise_floor_rad_s;            ///< the least that one frame's noise is taken for
-    double usual_range_rad_s;            ///< of an instrument that states none
+    double usual_range_rad_s;            ///< for an instrument that states none
 };
 
 const ClassFigures& figures_of(SensorClass sensor_class);

@@ -81,7 +81,7 @@ enum class EventCode : std::uint8_t {
     redundancy_exhausted = 15,
     adopted = 16,
     left_out = 17,   // provisionally
-    returned = 18,   // of an axis that was left out
+    returned = 18,   // an axis that was left out
     saturated = 19,
     rolled_back = 20,
     history_too_short = 21,

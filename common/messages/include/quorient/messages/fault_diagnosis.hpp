@@ -15,7 +15,7 @@ struct FaultDiagnosis {
     std::int64_t sample_time_ns = 0;
     std::array<double, max_axes> size{};        ///< in the unit of the diagnosis (codes.hpp); 0 where there is none
     std::array<double, max_axes> sigma{};       ///< standard deviation of the size
-    std::array<double, max_axes> bias{};        ///< of a diagnosed axis, whatever its diagnosis [rad/s; m/s^2]
+    std::array<double, max_axes> bias{};        ///< a diagnosed axis's, whatever its diagnosis [rad/s; m/s^2]
     std::array<double, max_axes> bias_sigma{};  ///< standard deviation of the bias
     std::uint32_t unit = 0;
     std::uint32_t detector = 0;

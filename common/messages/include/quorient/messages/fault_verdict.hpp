@@ -15,8 +15,8 @@ struct FaultVerdict {
     std::uint64_t epoch = 0;
     std::uint64_t sequence = 0;
     std::int64_t sample_time_ns = 0;
-    Exclusions excluded_from;                 ///< of isolated axes, and of those left out provisionally
-    double statistic = 0;                                                     ///< of the method, and its threshold in the same unit
+    Exclusions excluded_from;                 ///< for isolated axes, and for those left out provisionally
+    double statistic = 0;                                                     ///< the method's, and its threshold in the same unit
     double threshold = 0;
     std::array<double, max_axes> residual{};  ///< [rad; m/s]
     std::array<double, max_axes> bound{};     ///< what the residual stays below while the axis is healthy, same unit

@@ -12,7 +12,7 @@ namespace quorient {
 struct SensorFrame {
     std::uint64_t epoch = 0;
     std::uint64_t sequence = 0;
-    std::int64_t sample_time_ns = 0;  ///< of the instrument's own clock, strictly increasing within an epoch
+    std::int64_t sample_time_ns = 0;  ///< by the instrument's own clock, strictly increasing within an epoch
     double interval_s = 0;
     std::array<double, max_axes> increment{};    ///< quasi-coordinates: the integral of the rate over the interval [rad; m/s]
     std::array<double, max_axes> accumulated{};  ///< sum of the valid increments since sequence 0 [rad; m/s]

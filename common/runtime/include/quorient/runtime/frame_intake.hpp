@@ -39,7 +39,7 @@ public:
         interval,          ///< not above 0
         sample_time,       ///< does not increase
         unknown_revision,  ///< got, expected: the frames', the newest described of that epoch
-        no_description,    ///< of that epoch
+        no_description,    ///< none of that epoch came
         sequence_restart,  ///< got, expected: the frame's, the newest handled; a restart needs a new epoch
         value,             ///< got: the axis; not finite, or beyond its stated range
     };
@@ -48,7 +48,7 @@ public:
         Identity identity;
         std::uint64_t got = 0;
         std::uint64_t expected = 0;
-        const char* why = "";  ///< of a description
+        const char* why = "";  ///< for a description
     };
 
     struct Accepted {

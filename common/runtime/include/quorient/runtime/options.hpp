@@ -13,7 +13,7 @@ namespace quorient::runtime {
 /// The command line of every service.
 struct Options {
     std::string system_file;
-    std::string name;  ///< of this process in the system file
+    std::string name;  ///< this process's in the system file
     std::optional<Vendor> dds;
     std::optional<std::uint32_t> domain;
     std::vector<std::string> set;  ///< values in place of the file's

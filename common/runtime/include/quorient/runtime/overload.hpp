@@ -19,7 +19,7 @@ private:
     std::uint64_t epoch_ = 0;
     bool begun_ = false;              ///< A sample of this epoch has come; the members below mean nothing before.
     std::int64_t window_begin_ns_ = 0;
-    std::int64_t least_ns_ = 0;         ///< Of arrival - stamp, in this window.
+    std::int64_t least_ns_ = 0;         ///< The least arrival - stamp in this window.
     std::int64_t least_before_ns_ = 0;  ///< In the window before.
 };
 
@@ -74,7 +74,7 @@ private:
     std::int64_t behind_ns_ = 0;    ///< For so long samples were old, less a part of the time in which they were not.
     std::int64_t last_stamp_ns_ = 0;
     std::int64_t since_ns_ = 0;     ///< When it entered its state.
-    std::int64_t period_ns_ = first_period_ns;  ///< Of trials.
+    std::int64_t period_ns_ = first_period_ns;  ///< The time between trials.
 };
 
 }  // namespace quorient::runtime

@@ -45,7 +45,7 @@ private:
         SampleAge age;
         std::optional<Overload> overload;  ///< from the first frame on
         Identity newest;
-        std::int64_t age_ns = 0;  ///< of the newest
+        std::int64_t age_ns = 0;  ///< the newest one's
 
         bool sheds() const { return overload && overload->sheds(); }
         bool keeps_up() const { return !overload || overload->state() == Overload::State::keeping_up; }

@@ -69,7 +69,7 @@ struct SourceSettings {
     simulation::Scenario scenario;  ///< motion, rate, noise, faults; of a log only the faults and the seed count
     std::optional<LogSettings> log;
     std::optional<Ros2SourceSettings> ros2;
-    std::optional<calibration::CalibratedCluster> calibration;  ///< of these very sensors; of a log or of ros2
+    std::optional<calibration::CalibratedCluster> calibration;  ///< for these very sensors; with a log or ros2
     std::optional<simulation::VesselScenario> vessel;  ///< in place of the scenario, of which then only the faults count
     double speed = 1;                                  ///< times real time
 };
@@ -77,7 +77,7 @@ struct SourceSettings {
 struct SensorSettings {
     ProcessSettings process;
     SourceSettings source;
-    std::optional<geometry::SensorCluster> cluster;  ///< of a simulation; a log brings its own
+    std::optional<geometry::SensorCluster> cluster;  ///< for a simulation; a log brings its own
     double range = 0;                                ///< that the file states, of every axis [rad/s; m/s^2]; 0 = none
     std::string unit_name;
     double wait_s = 5;  ///< for the consumers, then it goes on without them
@@ -99,7 +99,7 @@ struct DetectorProcess {
     std::uint32_t detector = 0;
     SensorKind kind = SensorKind::gyro;
     fdi::DetectorSettings detection;
-    std::optional<fdi::ObserverSettings> observers;  ///< of a vessel, in place of `detection`
+    std::optional<fdi::ObserverSettings> observers;  ///< for a vessel, in place of `detection`
     double observer_margin = 1;
     fdi::VerdictSettings verdict;
 
@@ -133,10 +133,10 @@ struct VoterProcess {
 /// The process that shows a system: a page, its state as JSON, figures for Prometheus. It is only started where the file has it.
 struct MonitorProcess {
     ProcessSettings process;
-    std::string address = "127.0.0.1";  ///< of the web server; anything but loopback only where stated
+    std::string address = "127.0.0.1";  ///< the web server's; anything but loopback only where stated
     std::uint32_t port = 8080;          ///< 0 = any free one
     bool allow_orders = false;          ///< faults, readmissions and resets from the page
-    std::string token_file;  ///< of the token that lets other hosts send orders (security/token.hpp), absolute; empty: this host alone sends them
+    std::string token_file;  ///< holds the token that lets other hosts send orders (security/token.hpp), absolute; empty: this host alone sends them
 };
 
 /// What a run must show; `quorient launch` checks it against the simulator's truth and says so in its exit code.
@@ -144,8 +144,8 @@ struct Expectations {
     std::optional<AxisMask> isolated;            ///< exactly these axes, by every lane
     std::optional<std::string> instrument;       ///< exactly axes of this instrument, by every lane
     std::optional<std::uint32_t> within_frames;  ///< from the fault's first frame to each lane's isolation
-    std::optional<double> final_error_rad;       ///< of the voted attitude against truth
-    bool no_gap = false;                         ///< of the voted stream
+    std::optional<double> final_error_rad;       ///< the voted attitude's, against truth
+    bool no_gap = false;                         ///< the voted stream has none
     std::optional<double> each_fault_within_s;   ///< every fault of the truth is isolated by every lane so soon, and nothing else ever is
 
     bool any() const { return isolated || instrument || within_frames || final_error_rad || no_gap || each_fault_within_s; }
@@ -159,7 +159,7 @@ struct LaneProcess {
 
 /// Why processes cannot run in one.
 struct Discord {
-    std::size_t place = 0;  ///< of the name that is to blame
+    std::size_t place = 0;  ///< that of the name that is to blame
     std::string why;
 };
 
@@ -177,7 +177,7 @@ struct System {
     std::optional<MonitorProcess> web_monitor;
     Expectations expectations;
     std::vector<std::vector<std::string>> compositions;  ///< names of processes that run in one
-    std::optional<simulation::VesselModel> vessel;  ///< of a unit of kind vessel_rates: what the detectors take it to be
+    std::optional<simulation::VesselModel> vessel;  ///< for a unit of kind vessel_rates: what the detectors take it to be
     std::vector<std::string> channels;              ///< likewise, their names
 
     /// All processes of the file, in the order in which they start: those first that receive from the others.
@@ -203,7 +203,7 @@ struct System {
 
 /// What the command line sets in place of the file.
 struct Overrides {
-    std::optional<Vendor> dds{};  ///< of every process
+    std::optional<Vendor> dds{};  ///< for every process
     std::optional<std::uint32_t> domain{};
     std::vector<std::string> processes{};  ///< those that run here: only their networks and keys are checked; empty = every one
     std::vector<std::string> set{};  ///< `source.speed=2`, `source.faults+=axis=1,kind=zero`: as configuration::assign takes them
