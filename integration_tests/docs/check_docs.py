@@ -9,7 +9,7 @@ import subprocess
 import sys
 
 LONGEST_SENTENCE = 35  # words
-READ_BY_PEOPLE = ("README.md", "ARCHITECTURE.md", "KNOWN_ISSUES.md", "docs/")
+READ_BY_PEOPLE = re.compile(r"(.*/)?README\.md|ARCHITECTURE\.md|CONTRIBUTING\.md|KNOWN_ISSUES\.md|docs/.*")
 REFERENCES = "docs/references.md"
 SOURCES = (".cpp", ".hpp", ".h", ".c", ".py", ".idl", ".cmake", ".yaml", ".md", ".txt")
 
@@ -90,7 +90,7 @@ def problems(root):
         found = list(unknown_papers(text, known))
         if name.endswith(".md"):
             found += broken_links(root, name, text)
-            if name.startswith(READ_BY_PEOPLE) and "/" not in name or name.startswith("docs/"):
+            if READ_BY_PEOPLE.fullmatch(name):
                 found += long_sentences(text)
         else:
             found += [f"line {number}: a comment begins with 'Of'" for number, line in enumerate(text.splitlines(), 1) if COMMENT_OF.search(line)]

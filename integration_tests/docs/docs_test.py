@@ -34,6 +34,7 @@ class Documents(unittest.TestCase):
             ("README.md", "See [a heading](docs/references.md#paper-009).\n"),
             ("README.md", "A sentence of " + "very " * 33 + "many words.\n"),
             ("docs/page.md", "- a point without an end\n" * 10),
+            ("tools/README.md", "A sentence of " + "very " * 33 + "many words.\n"),
             ("docs/page.md", "As paper 007 says.\n"),
             ("tools/a.hpp", "/// A method. [paper 009]\n"),
             ("tools/a.hpp", "/// Of a method that nobody calls the result is not kept.\n"),
@@ -50,6 +51,7 @@ class Documents(unittest.TestCase):
             ("README.md", "See [paper 001](docs/references.md#paper-001), [the web](https://example.org) and [below](#below).\n\n## Below\n"),
             ("README.md", "| a table may hold " + "many " * 40 + "words |\n"),
             ("README.md", "```\n" + "code " * 40 + "\n```\n"),
+            ("tools/notes.md", "A sentence of " + "very " * 33 + "many words.\n"),
             ("build/release/a.hpp", "/// Of nothing that is ours: a build made it.\n"),
             ("tools/a.hpp", "/// The sum\n/// of all frames. [paper 001, eq 3]\n"),
         ]:
