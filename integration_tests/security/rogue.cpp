@@ -67,7 +67,8 @@ constexpr std::uint32_t mark_of_cyclonedds = 98;
 
 std::uint64_t wall_ns()
 {
-    return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count());
+    return static_cast<std::uint64_t>(
+        std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count());
 }
 
 /// The member that carries the mark; no sample of the system has such a value there.

@@ -120,9 +120,10 @@ Report field_ablation(const RunSettings& settings, const OnProgress& on_progress
     const std::vector<FieldLog> sound = load_field_logs(settings.logs);
     const std::vector<FieldLog> faulty = load_field_logs(settings.faulty_logs);
     Report report;
-    report.text = fmt::format("mount: {}; no log is calibrated; one rule is off at a time\n\n| without | log | instruments | truth | latched | left out |\n"
-                              "|--|--|--|--|--|--|\n",
-                              fdi::name_of(settings.mount));
+    report.text = fmt::format(
+        "mount: {}; no log is calibrated; one rule is off at a time\n\n| without | log | instruments | truth | latched | left out |\n"
+        "|--|--|--|--|--|--|\n",
+        fdi::name_of(settings.mount));
     std::string faults = "\n## Faults added to the sound logs\n\n" + faults_heading();
     report.json["mount"] = fdi::name_of(settings.mount);
     report.json["variants"] = Json::array();

@@ -25,7 +25,8 @@ void add_logs(const std::vector<LogFigures>& logs, Report& report, Json& json)
                    "|--|--|--|--|--|--|--|--|--|\n");
     for (const LogFigures& log : logs) {
         const SoundRun& run = log.run;
-        const std::string names = run.latched == 0 ? "-" : fmt::format("{} at {:.2f} s", axis_names(log.description, run.latched), run.first_latched_s);
+        const std::string names =
+            run.latched == 0 ? "-" : fmt::format("{} at {:.2f} s", axis_names(log.description, run.latched), run.first_latched_s);
         const std::string px4 = run.px4 == 0 ? "-" : fmt::format("{} at {:.2f} s", axis_names(log.description, run.px4), run.px4_s);
         const std::string text = diagnoses_text(run.diagnosis, log.description, ~AxisMask{0});
         fmt::format_to(std::back_inserter(report.text), "| {} | {} | {:.1f} | {} | {} ({:.2f} %) | {:.2f} | {:.1f} | {} | {} |\n", log.name,
@@ -132,12 +133,13 @@ void add_beside_peers(const FaultFigures& figures, Report& report, Json& json)
 
 void add_peers(const FieldFigures& figures, Report& report)
 {
-    report.text += "\n## Beside the rules of PX4 and ArduPilot\n\n"
-                   "Errors of the attitude in the 20 s after the onset, in degrees: the largest (median, p90 of the trials), and at the end (median). "
-                   "PX4 and ArduPilot fly by the faulty gyro. PX4 changes to a sound one when its rule names it. ArduPilot compares gyros before "
-                   "arming only, in logs that begin at rest.\n\n"
-                   "| fault | Quorient largest | p90 | end | PX4 right % | wrong % | s | largest | p90 | end | ArduPilot refuses to arm % | largest | p90 | end |\n"
-                   "|--|--|--|--|--|--|--|--|--|--|--|--|--|--|\n";
+    report.text +=
+        "\n## Beside the rules of PX4 and ArduPilot\n\n"
+        "Errors of the attitude in the 20 s after the onset, in degrees: the largest (median, p90 of the trials), and at the end (median). "
+        "PX4 and ArduPilot fly by the faulty gyro. PX4 changes to a sound one when its rule names it. ArduPilot compares gyros before "
+        "arming only, in logs that begin at rest.\n\n"
+        "| fault | Quorient largest | p90 | end | PX4 right % | wrong % | s | largest | p90 | end | ArduPilot refuses to arm % | largest | p90 | end |\n"
+        "|--|--|--|--|--|--|--|--|--|--|--|--|--|--|\n";
     Json list = Json::array();
     for (const FaultFigures& fault : figures.faults) add_beside_peers(fault, report, list);
     report.json["beside_peers"] = list;
@@ -157,10 +159,11 @@ void add_wrong(const FaultRun& run, Report& report)
 
 void add_faults(const FieldFigures& figures, Report& report)
 {
-    report.text += "\n## Faults added to the sound logs\n\n"
-                   "Right: the faulty instrument latched and no other; of shocks, dropouts and single spikes: nobody latched. Out: left out of the attitude.\n\n"
-                   "| fault | n | right % | wrong % | out % | out s | p90 | latched s | p90 | axis % | kind % | size off by | attitude deg | p90 |\n"
-                   "|--|--|--|--|--|--|--|--|--|--|--|--|--|--|\n";
+    report.text +=
+        "\n## Faults added to the sound logs\n\n"
+        "Right: the faulty instrument latched and no other; of shocks, dropouts and single spikes: nobody latched. Out: left out of the attitude.\n\n"
+        "| fault | n | right % | wrong % | out % | out s | p90 | latched s | p90 | axis % | kind % | size off by | attitude deg | p90 |\n"
+        "|--|--|--|--|--|--|--|--|--|--|--|--|--|--|\n";
     Json list = Json::array();
     std::size_t trials = 0;
     std::size_t wrong = 0;

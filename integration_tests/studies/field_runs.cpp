@@ -50,7 +50,8 @@ std::vector<LogFigures> play_logs(const std::vector<FieldLog>& logs, const RunSe
     std::vector<LogFigures> figures(logs.size());
     cli::for_each(logs.size(), settings.threads, {}, [&](std::size_t i) {
         const FieldLog& log = logs[i];
-        figures[i] = {log.name, log.instruments(), log.duration_s(), description_of(log.cluster), play_sound(log, monitor_on(log, settings.mount, rules))};
+        figures[i] = {log.name, log.instruments(), log.duration_s(), description_of(log.cluster),
+                      play_sound(log, monitor_on(log, settings.mount, rules))};
     });
     return figures;
 }

@@ -30,7 +30,8 @@ constexpr Study all_studies[] = {
     {"paper-002", "the figures of the paper that a fitted fault model reproduces", paper_002_trials, paper_002},
     {"ceiling", "what a single sample can detect and isolate, per layout", ceiling_trials, ceiling},
     {"vessel", "observers on the vessel of paper 001: false alarms and isolation with a model that is 5 % wrong", vessel_trials, vessel},
-    {"design", "the layout designer: known optima, published arrays, every choice of places, survival of families", array_design_trials, array_design},
+    {"design", "the layout designer: known optima, published arrays, every choice of places, survival of families", array_design_trials,
+     array_design},
     {"detection-delay", "faults added to two recordings of one array, each corrected by the other's calibration", detection_delay_trials,
      detection_delay, Study::Logs::of_one_array},
     {"detection-seeds", "the same steps in violent motion with five seeds: how much the medians scatter", detection_seeds_trials,
@@ -39,7 +40,8 @@ constexpr Study all_studies[] = {
      motion_noise, Study::Logs::of_one_array},
     {"motion-terms", "the terms of that noise from each recording alone, and the other one played with them", motion_terms_trials,
      motion_terms, Study::Logs::of_one_array},
-    {"field", "the field detector on logs of any arrays, uncalibrated: as they are, and with faults added", field_trials, field, Study::Logs::any},
+    {"field", "the field detector on logs of any arrays, uncalibrated: as they are, and with faults added", field_trials, field,
+     Study::Logs::any},
     {"field-ablation", "the same with one rule of the detector off at a time", field_ablation_trials, field_ablation, Study::Logs::any},
 };
 

@@ -113,8 +113,9 @@ void DetectorService::assess(const SensorFrame& frame)
 bool DetectorService::is_news(const FaultVerdict& verdict) const
 {
     const FaultVerdict& last = events_.last();
-    return verdict.epoch != last.epoch || verdict.state != last.state || verdict.isolated_mask != last.isolated_mask || verdict.suspect_mask != last.suspect_mask ||
-           verdict.excluded_from != last.excluded_from || verdict.candidate_count != last.candidate_count || verdict.candidate_set != last.candidate_set;
+    return verdict.epoch != last.epoch || verdict.state != last.state || verdict.isolated_mask != last.isolated_mask ||
+           verdict.suspect_mask != last.suspect_mask || verdict.excluded_from != last.excluded_from ||
+           verdict.candidate_count != last.candidate_count || verdict.candidate_set != last.candidate_set;
 }
 
 void DetectorService::send(const FaultVerdict& verdict)

@@ -33,10 +33,12 @@ void AttitudeEvents::report_correction(const AttitudeState& attitude, const Clus
 {
     if (attitude.rolled_back_frames == 0) return;
     const AxisMask without = all_axes(description.axis_count) & ~attitude.used_mask;
-    node_.report(EventCode::rolled_back, Severity::info, identity_of(attitude), without,
-                 fmt::format("attitude corrected by {:.3g} deg: the last {} integrated again without {}; {} axes in use",
-                             rotation::angle_of(attitude.reset_rotation) * 180 / std::numbers::pi, attitude.rolled_back_frames == 1 ? std::string{"frame"} : fmt::format("{} frames", attitude.rolled_back_frames),
-                             axis_names(description, without), std::popcount(attitude.used_mask)));
+    node_.report(
+        EventCode::rolled_back, Severity::info, identity_of(attitude), without,
+        fmt::format("attitude corrected by {:.3g} deg: the last {} integrated again without {}; {} axes in use",
+                    rotation::angle_of(attitude.reset_rotation) * 180 / std::numbers::pi,
+                    attitude.rolled_back_frames == 1 ? std::string{"frame"} : fmt::format("{} frames", attitude.rolled_back_frames),
+                    axis_names(description, without), std::popcount(attitude.used_mask)));
 }
 
 void AttitudeEvents::report_mode(const AttitudeState& attitude)

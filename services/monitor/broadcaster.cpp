@@ -22,7 +22,12 @@ std::string message(const char* kind, const std::string& data)
 }  // namespace
 
 Broadcaster::Broadcaster(const Names& names, Exchange& exchange, ViewerServer& viewers)
-    : names_(names), exchange_(exchange), viewers_(viewers), metrics_(names), events_(std::make_shared<const std::string>("[]")), thread_([this] { run(); })
+    : names_(names),
+      exchange_(exchange),
+      viewers_(viewers),
+      metrics_(names),
+      events_(std::make_shared<const std::string>("[]")),
+      thread_([this] { run(); })
 {
 }
 

@@ -70,21 +70,37 @@ Description description_of(ViewerChannel channel)
                             {"parent_frame_id", text()},
                             {"child_frame_id", text()},
                             {"translation", titled("foxglove.Vector3", object({{"x", number()}, {"y", number()}, {"z", number()}}))},
-                            {"rotation", titled("foxglove.Quaternion", object({{"x", number()}, {"y", number()}, {"z", number()}, {"w", number()}}))}})};
+                            {"rotation", titled("foxglove.Quaternion",
+                                                object({{"x", number()}, {"y", number()}, {"z", number()}, {"w", number()}}))}})};
         case ViewerChannel::attitude:
             return {"/attitude", "quorient.Attitude",
-                    object({{"timestamp", time_schema()}, {"roll_deg", number()}, {"pitch_deg", number()}, {"yaw_deg", number()}, {"sigma_rad", number()},
-                            {"spread_rad", number()}, {"error_rad", number()}, {"largest_error_rad", number()}})};
+                    object({{"timestamp", time_schema()},
+                            {"roll_deg", number()},
+                            {"pitch_deg", number()},
+                            {"yaw_deg", number()},
+                            {"sigma_rad", number()},
+                            {"spread_rad", number()},
+                            {"error_rad", number()},
+                            {"largest_error_rad", number()}})};
         case ViewerChannel::level:
-            return {"/level", "quorient.Level", object({{"timestamp", time_schema()}, {"level", text()}, {"code", number()}, {"lanes_vouching", number()}})};
+            return {"/level", "quorient.Level",
+                    object({{"timestamp", time_schema()}, {"level", text()}, {"code", number()}, {"lanes_vouching", number()}})};
         case ViewerChannel::lanes:
             return {"/lanes", "quorient.Lanes",
                     object({{"timestamp", time_schema()},
-                            {"lanes", list_of({{"name", text()}, {"verdict", text()}, {"standing", text()}, {"statistic", number()}, {"threshold", number()}})}})};
+                            {"lanes", list_of({{"name", text()},
+                                               {"verdict", text()},
+                                               {"standing", text()},
+                                               {"statistic", number()},
+                                               {"threshold", number()}})}})};
         case ViewerChannel::axes:
             return {"/axes", "quorient.Axes",
                     object({{"timestamp", time_schema()},
-                            {"axes", list_of({{"name", text()}, {"state", text()}, {"lane", text()}, {"least_residual", number()}, {"largest_residual", number()},
+                            {"axes", list_of({{"name", text()},
+                                              {"state", text()},
+                                              {"lane", text()},
+                                              {"least_residual", number()},
+                                              {"largest_residual", number()},
                                               {"bound", number()}})}})};
         default:
             return {"/log", "foxglove.Log",

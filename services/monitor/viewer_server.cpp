@@ -132,7 +132,8 @@ private:
     void refuse()
     {
         open_ = false;
-        stream_.async_close({websocket::close_code::policy_error, "expected a JSON object with an op"}, [self = shared_from_this()](Error) { self->end(); });
+        stream_.async_close({websocket::close_code::policy_error, "expected a JSON object with an op"},
+                            [self = shared_from_this()](Error) { self->end(); });
     }
 
     /// @returns false for what is no message of the protocol.
@@ -224,8 +225,10 @@ struct ViewerServer::Implementation {
     explicit Implementation(const Names& its_names, const ViewerLimits& limits) : names(its_names)
     {
         shared.limits = limits;
-        shared.greeting = std::make_shared<const std::string>(
-            dumped({{"op", "serverInfo"}, {"name", "Quorient: " + names.system}, {"capabilities", Json::array()}, {"metadata", {{"unit", std::to_string(names.unit)}}}}));
+        shared.greeting = std::make_shared<const std::string>(dumped({{"op", "serverInfo"},
+                                                                      {"name", "Quorient: " + names.system},
+                                                                      {"capabilities", Json::array()},
+                                                                      {"metadata", {{"unit", std::to_string(names.unit)}}}}));
         shared.channels = std::make_shared<const std::string>(dumped({{"op", "advertise"}, {"channels", advertised_channels()}}));
         thread = std::thread([this] { context.run(); });
     }

@@ -59,7 +59,8 @@ public:
           from_s_(settings.source.log->from_s),
           to_s_(settings.source.log->to_s.value_or(std::numeric_limits<double>::infinity()))
     {
-        if (auto doubt = doubted_rate(1 / reader_->description().interval_s, settings.source.log->stated_rate_hz)) remarks_.push_back(std::move(*doubt));
+        if (auto doubt = doubted_rate(1 / reader_->description().interval_s, settings.source.log->stated_rate_hz))
+            remarks_.push_back(std::move(*doubt));
         if (!described.remark.empty()) remarks_.push_back(described.remark);
         remarks_.insert(remarks_.end(), logs.remarks.begin(), logs.remarks.end());
     }
@@ -202,7 +203,8 @@ tl::expected<DescribedLog, std::string> describe_log(recording::Reader& reader, 
         if (const auto other = difference(calibration->description, description))
             return tl::make_unexpected(fmt::format("{}: the calibration is of other sensors: {}", name_of(settings), *other));
         description = calibration->description;
-        if (is_corrected(recorded, description)) described.remark = "the recording holds increments that this calibration corrected: they are taken as they are";
+        if (is_corrected(recorded, description))
+            described.remark = "the recording holds increments that this calibration corrected: they are taken as they are";
         else described.correction = Correction::of(*calibration);
     }
     std::optional<attitude::Quaternion> levelled;
@@ -240,7 +242,8 @@ std::optional<std::array<double, 4>> attitude_at_start(recording::Reader& reader
 
 }  // namespace
 
-tl::expected<std::unique_ptr<FrameSource>, std::string> make_log_source(const system::SensorSettings& settings, std::uint64_t epoch, const recording::LogOptions& options)
+tl::expected<std::unique_ptr<FrameSource>, std::string> make_log_source(const system::SensorSettings& settings, std::uint64_t epoch,
+                                                                        const recording::LogOptions& options)
 {
     auto beginning = open(settings, options);
     if (!beginning) return tl::make_unexpected(beginning.error());
@@ -264,7 +267,8 @@ tl::expected<std::unique_ptr<FrameSource>, std::string> make_log_source(const sy
     return source;
 }
 
-tl::expected<std::unique_ptr<FrameSource>, std::string> make_source(const system::SensorSettings& settings, std::uint64_t epoch, const recording::LogOptions& log)
+tl::expected<std::unique_ptr<FrameSource>, std::string> make_source(const system::SensorSettings& settings, std::uint64_t epoch,
+                                                                    const recording::LogOptions& log)
 {
     if (settings.source.log) return make_log_source(settings, epoch, log);
     if (settings.source.ros2) return make_ros2_source(settings, epoch);

@@ -188,7 +188,8 @@ private:
         const auto status = subscriptions_[imu]->status();
         if (status.matched > 0) return fmt::format("{}: {} has a publisher that sends nothing", name, shown);
         if (status.incompatible > 0) return fmt::format("{}: the publisher of {} offers another {}", name, shown, status.policy);
-        return fmt::format("{}: nobody publishes sensor_msgs/Imu on {}: wrong name, type, interface or ROS_DOMAIN_ID (here {})?", name, shown, domain_);
+        return fmt::format("{}: nobody publishes sensor_msgs/Imu on {}: wrong name, type, interface or ROS_DOMAIN_ID (here {})?", name,
+                           shown, domain_);
     }
 
     /// "rt/imu/data" as ROS 2 writes it.

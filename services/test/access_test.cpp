@@ -103,7 +103,8 @@ TEST_F(AccessTest, of_every_process_is_what_it_asks_the_bus_for)
 
 TEST_F(AccessTest, has_the_topics_of_ros2_where_the_system_file_has_them)
 {
-    const auto system = load({"ros2={imu: /vessel/imu}", "unit.layout=null", "source={kind: ros2_imu, rate_hz: 100, noise_rad: 1.0e-5, imus: [{topic: /a}, {topic: /b}]}",
+    const auto system = load({"ros2={imu: /vessel/imu}", "unit.layout=null",
+                              "source={kind: ros2_imu, rate_hz: 100, noise_rad: 1.0e-5, imus: [{topic: /a}, {topic: /b}]}",
                               "lanes=[{name: a, detector: {method: subset}}]"});
     expect_exactly_of_sensor(system);
     for (const auto& voter : system.voters) expect_exactly<voter::VoterService>(system, voter);

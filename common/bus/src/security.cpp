@@ -26,7 +26,8 @@ Digest subject_digest(const std::string& common_name)
     Digest digest{};
     unsigned length = 0;
     const auto* text = reinterpret_cast<const unsigned char*>(common_name.data());
-    if (!subject || X509_NAME_add_entry_by_NID(subject.get(), NID_commonName, MBSTRING_UTF8, text, static_cast<int>(common_name.size()), -1, 0) != 1 ||
+    if (!subject ||
+        X509_NAME_add_entry_by_NID(subject.get(), NID_commonName, MBSTRING_UTF8, text, static_cast<int>(common_name.size()), -1, 0) != 1 ||
         X509_NAME_digest(subject.get(), EVP_sha256(), digest.data(), &length) != 1)
         return {};  // longer than the 64 characters that a common name may have: no certificate has it either
     return digest;

@@ -89,8 +89,10 @@ public:
         if (!std::isfinite(start.excess)) return std::nullopt;
         const auto look = [this](const Logs& logs) { return seen(logs); };
         const Logs logs = TermSearch<4, decltype(look)>(start, look, search).result();
-        return fdi::GatedNoise{
-            .jitter_along_s = std::exp(logs[0]), .jitter_across_s = std::exp(logs[1]), .axes_error = std::exp(logs[2]), .rate_error = std::exp(logs[3])};
+        return fdi::GatedNoise{.jitter_along_s = std::exp(logs[0]),
+                               .jitter_across_s = std::exp(logs[1]),
+                               .axes_error = std::exp(logs[2]),
+                               .rate_error = std::exp(logs[3])};
     }
 
 private:

@@ -84,7 +84,8 @@ std::optional<Silence> make_silent(Samples samples, Calibration& calibration)
     }
     const auto field = replay("field", samples, calibration.cluster, *cluster);
     if (!accumulating || !field) return std::nullopt;
-    return Silence{.replayed = {*field, *accumulating}, .at_limit = calibration.cluster.motion_level >= highest_level && (accumulating->isolated & sound) != 0};
+    return Silence{.replayed = {*field, *accumulating},
+                   .at_limit = calibration.cluster.motion_level >= highest_level && (accumulating->isolated & sound) != 0};
 }
 
 }  // namespace quorient::calibration

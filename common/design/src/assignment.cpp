@@ -203,7 +203,8 @@ public:
     void merge(const Champions& other)
     {
         for (std::size_t k = 0; k < holders_.size(); ++k)
-            if (!other.holders_[k].assignment.empty() && (holders_[k].assignment.empty() || other.holders_[k].key < holders_[k].key)) holders_[k] = other.holders_[k];
+            if (!other.holders_[k].assignment.empty() && (holders_[k].assignment.empty() || other.holders_[k].key < holders_[k].key))
+                holders_[k] = other.holders_[k];
     }
 
     std::vector<Assignment> assignments() const
@@ -303,7 +304,9 @@ std::size_t Assignments::count(std::size_t most) const
 
 bool Assignments::allowed(const Assignment& assignment) const
 {
-    const auto on_face = [&](std::size_t face) { return std::ranges::count(assignment, face, [&](std::uint16_t other) { return places_[other].face; }); };
+    const auto on_face = [&](std::size_t face) {
+        return std::ranges::count(assignment, face, [&](std::uint16_t other) { return places_[other].face; });
+    };
     return std::ranges::all_of(assignment, [&](std::uint16_t place) {
         return places_[place].holds >= instruments_ || static_cast<std::size_t>(on_face(places_[place].face)) <= places_[place].holds;
     });

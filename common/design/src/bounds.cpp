@@ -75,10 +75,13 @@ Checked check_failures(const Brief& brief)
     if (k == 0) return {};
     if (brief.fails_by_instrument()) {
         if (brief.units() >= k + 2) return {};
-        return refused("failures", fmt::format("{} failures of {} instruments: with two left a difference does not tell which is wrong; {} are needed", k,
-                                          brief.units(), k + 2));
+        return refused("failures",
+                       fmt::format("{} failures of {} instruments: with two left a difference does not tell which is wrong; {} are needed",
+                                   k, brief.units(), k + 2));
     }
-    if (n < k + 3) return refused("failures", fmt::format("with {} of {} axes failed {} are left: 3 are needed to measure a rotation", k, n, n - std::min<std::size_t>(n, k)));
+    if (n < k + 3)
+        return refused("failures", fmt::format("with {} of {} axes failed {} are left: 3 are needed to measure a rotation", k, n,
+                                               n - std::min<std::size_t>(n, k)));
     if (n == 4 || n >= k + 4) return {};
     return refused("failures", fmt::format(
         "{} isolable failures of {} axes: after {} of them {} axes are left, whose one parity equation shows a further fault and not its "
@@ -93,18 +96,25 @@ Checked check_sets(const Brief& brief)
     double sets = 1;
     for (unsigned failed = 0; failed < k; ++failed) sets *= static_cast<double>(brief.units() - failed) / (failed + 1);
     if (sets <= most_failure_sets) return {};
-    return refused("failures", fmt::format("{} failures of {} can happen in {:.0f} ways: at most {} are judged", k, brief.units(), sets, most_failure_sets));
+    return refused("failures", fmt::format("{} failures of {} can happen in {:.0f} ways: at most {} are judged", k, brief.units(), sets,
+                                           most_failure_sets));
 }
 
 Checked check_simultaneous(const Brief& brief)
 {
     const std::size_t n = brief.axis_count();
     if (brief.detectable > n - 3)
-        return refused("detectable", fmt::format("{} simultaneous faults to be detected whatever their sizes: {} axes have {} parity equations and detect {}; {} axes are needed",
-                                          brief.detectable, n, n - 3, n - 3, brief.detectable + 3));
+        return refused(
+            "detectable",
+            fmt::format(
+                "{} simultaneous faults to be detected whatever their sizes: {} axes have {} parity equations and detect {}; {} axes are needed",
+                brief.detectable, n, n - 3, n - 3, brief.detectable + 3));
     if (brief.isolable > (n - 3) / 2)
-        return refused("isolable", fmt::format("{} simultaneous faults to be isolated whatever their sizes: that needs 2 parity equations for each, {} axes have {}; {} axes are needed",
-                                          brief.isolable, n, n - 3, 2 * brief.isolable + 3));
+        return refused(
+            "isolable",
+            fmt::format(
+                "{} simultaneous faults to be isolated whatever their sizes: that needs 2 parity equations for each, {} axes have {}; {} axes are needed",
+                brief.isolable, n, n - 3, 2 * brief.isolable + 3));
     return {};
 }
 
@@ -115,12 +125,17 @@ Checked check_angle(const Brief& brief)
     const std::size_t n = brief.axis_count();
     const double most = largest_minimum_angle_rad(n);
     if (wanted > most + decimal_rounding)
-        return refused("minimum_angle_deg", fmt::format("{:g} deg between any two of {} axes: no {} lines in space keep more than {:.4f} deg ({})", wanted / degree,
-                                          n, n, most / degree, n <= 6 ? "Fejes Toth 1965" : n == 7 ? "Rankin's bound" : "Rankin's and Fejes Toth's bounds"));
+        return refused("minimum_angle_deg",
+                       fmt::format("{:g} deg between any two of {} axes: no {} lines in space keep more than {:.4f} deg ({})",
+                                   wanted / degree, n, n, most / degree,
+                                   n <= 6   ? "Fejes Toth 1965"
+                                   : n == 7 ? "Rankin's bound"
+                                            : "Rankin's and Fejes Toth's bounds"));
     for (Eigen::Index i = 0; i < brief.kept.rows(); ++i)
         for (Eigen::Index j = i + 1; j < brief.kept.rows(); ++j)
             if (std::abs(brief.kept.row(i).dot(brief.kept.row(j))) > std::cos(wanted) + decimal_rounding)
-                return refused("minimum_angle_deg", fmt::format("{:g} deg between any two axes: axes {} and {}, which are kept, are closer", wanted / degree, i, j));
+                return refused("minimum_angle_deg", fmt::format("{:g} deg between any two axes: axes {} and {}, which are kept, are closer",
+                                                                wanted / degree, i, j));
     return {};
 }
 
@@ -130,14 +145,17 @@ Checked check_limits(const Brief& brief, const Bounds& bounds)
         const auto found = std::ranges::find(bounds.worst_after, limit.failures, &BoundAfter::failures);
         const bool whole = limit.failures == 0;
         if (!whole && found == bounds.worst_after.end())
-            return refused("limits", fmt::format("a limit after {} failures: {} axes are judged after at most {}", limit.failures, brief.axis_count(), bounds.worst_after.size()));
+            return refused("limits", fmt::format("a limit after {} failures: {} axes are judged after at most {}", limit.failures,
+                                                 brief.axis_count(), bounds.worst_after.size()));
         const double trace = whole ? bounds.trace : found->trace;
         const double volume = whole ? bounds.volume : found->volume;
         const auto forbids = [&](const char* what, const std::optional<double>& wanted, double least) -> Checked {
             if (!wanted || *wanted >= least * (1 - decimal_rounding)) return {};
-            return refused("limits", fmt::format("{} of at most {:g} after {} failures: no {} axes do better than {:.6g}", what, *wanted, limit.failures, brief.axis_count(), least));
+            return refused("limits", fmt::format("{} of at most {:g} after {} failures: no {} axes do better than {:.6g}", what, *wanted,
+                                                 limit.failures, brief.axis_count(), least));
         };
-        for (const Checked& checked : {forbids("a trace", limit.trace, trace), forbids("a volume", limit.volume, volume), forbids("a condition", limit.condition, 1)})
+        for (const Checked& checked : {forbids("a trace", limit.trace, trace), forbids("a volume", limit.volume, volume),
+                                       forbids("a condition", limit.condition, 1)})
             if (!checked) return checked;
     }
     return {};
@@ -152,12 +170,14 @@ Checked check_mounted(const Brief& brief)
 Checked check_noise(const Brief& brief)
 {
     if (brief.noise.size() > 1 && brief.noise.size() != brief.instruments)
-        return refused("noise", fmt::format("{} noises are given for {} instruments: one for all, or one for each", brief.noise.size(), brief.instruments));
+        return refused("noise", fmt::format("{} noises are given for {} instruments: one for all, or one for each", brief.noise.size(),
+                                            brief.instruments));
     const geometry::AxisVector all = brief.noise_of_axes();
     if (!all.allFinite() || all.minCoeff() <= 0) return refused("noise", "a noise must be above 0 and finite");
     if (all.maxCoeff() > most_noise_ratio * all.minCoeff())
-        return refused("noise", fmt::format("noise from {:g} to {:g}{}: axes that differ by more than a factor of {:g} are no array", all.minCoeff(), all.maxCoeff(),
-                                            brief.kept.rows() > 0 ? " (kept axes have 1)" : "", most_noise_ratio));
+        return refused("noise",
+                       fmt::format("noise from {:g} to {:g}{}: axes that differ by more than a factor of {:g} are no array", all.minCoeff(),
+                                   all.maxCoeff(), brief.kept.rows() > 0 ? " (kept axes have 1)" : "", most_noise_ratio));
     return {};
 }
 
@@ -165,7 +185,8 @@ Checked check_mission(const Brief& brief)
 {
     if (!brief.mission) return {};
     const Mission& mission = *brief.mission;
-    if (!(mission.hours > 0) || !std::isfinite(mission.hours)) return refused("mission", fmt::format("a mission of {} h: it must be above 0 and finite", mission.hours));
+    if (!(mission.hours > 0) || !std::isfinite(mission.hours))
+        return refused("mission", fmt::format("a mission of {} h: it must be above 0 and finite", mission.hours));
     const std::size_t instruments = brief.all_instruments();
     for (const SharedPart& part : mission.shared)
         for (const std::size_t index : part.instruments)

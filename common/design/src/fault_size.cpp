@@ -86,7 +86,8 @@ double unexplained(const geometry::AxisMatrix& p, Index i, Index j, double sign,
     own << p(k, k), p(k, l), p(l, k), p(l, l);
     const double whole = p(i, i) + p(j, j) + 2 * sign * p(i, j);
     if (own.determinant() < invisible) {  // both rivals look alike: one of them
-        const double best = std::max(own(0, 0) > invisible ? seen(0) * seen(0) / own(0, 0) : 0.0, own(1, 1) > invisible ? seen(1) * seen(1) / own(1, 1) : 0.0);
+        const double best = std::max(own(0, 0) > invisible ? seen(0) * seen(0) / own(0, 0) : 0.0,
+                                     own(1, 1) > invisible ? seen(1) * seen(1) / own(1, 1) : 0.0);
         return std::max(0.0, whole - best);
     }
     return std::max(0.0, whole - seen.dot(own.inverse() * seen));
@@ -120,7 +121,8 @@ double detection_probability(unsigned redundancy, double visibility, double size
 double detected_size(unsigned redundancy, double visibility, const Probabilities& probabilities)
 {
     if (redundancy == 0 || visibility < invisible) return infinity;
-    const double size = size_reaching(probabilities.success, 1, [&](double scaled) { return detection_probability(redundancy, 1, scaled, probabilities.false_alarm); });
+    const double size = size_reaching(
+        probabilities.success, 1, [&](double scaled) { return detection_probability(redundancy, 1, scaled, probabilities.false_alarm); });
     return size / std::sqrt(visibility);
 }
 

@@ -212,7 +212,8 @@ double single_cost(const geometry::Axes& axes, const Yardstick& yardstick, Objec
         case Objective::isolated_axis: return of_space(isolated_axis);
         case Objective::detected_pair: return of_space(detected_pair);
         case Objective::isolated_pair: return of_space(isolated_pair);
-        case Objective::mounted_trace: return yardstick.mounting_error_rad > 0 ? worst_mounted_trace(axes, yardstick) : cost(judge(axes, yardstick), objective);
+        case Objective::mounted_trace:
+            return yardstick.mounting_error_rad > 0 ? worst_mounted_trace(axes, yardstick) : cost(judge(axes, yardstick), objective);
         case Objective::condition: return worst_without(whitened(axes, yardstick.noise), sets_of(yardstick, 0), 0).condition;
         case Objective::worst_condition:
             return worst_without(whitened(axes, yardstick.noise), sets_of(yardstick, yardstick.failures), yardstick.failures).condition;
@@ -265,7 +266,8 @@ double shortfall(const Figures& figures, const Brief& brief)
     if (figures.minimum_angle_rad < brief.minimum_angle_rad - close) missing += brief.minimum_angle_rad - figures.minimum_angle_rad;
     if (figures.detectable < brief.detectable) missing += brief.detectable - figures.detectable;
     if (figures.isolable < brief.isolable) missing += brief.isolable - figures.isolable;
-    const bool measures = std::isfinite(figures.trace) && (!brief.failures || figures.worst_after.empty() || std::isfinite(figures.worst_after.back().trace));
+    const bool measures =
+        std::isfinite(figures.trace) && (!brief.failures || figures.worst_after.empty() || std::isfinite(figures.worst_after.back().trace));
     if (!measures) missing += 1e6;
     return missing;
 }

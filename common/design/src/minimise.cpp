@@ -190,8 +190,10 @@ VectorXd minimise_without_derivatives(const std::function<double(const VectorXd&
                                       double first_step)
 {
     if (start.size() == 0) return start;
-    const MinimaxProblem problem{[&](const VectorXd& x, VectorXd& values, Eigen::MatrixXd*) { values = VectorXd::Constant(1, std::min(cost(x), 1e9)); }, {},
-                                 not_above_zero};
+    const MinimaxProblem problem{
+        [&](const VectorXd& x, VectorXd& values, Eigen::MatrixXd*) { values = VectorXd::Constant(1, std::min(cost(x), 1e9)); },
+        {},
+        not_above_zero};
     Work work{problem, false};
     std::vector<double> x(start.begin(), start.end());
     const Optimiser optimiser(nlopt_create(NLOPT_LN_COBYLA, static_cast<unsigned>(x.size())));

@@ -219,7 +219,8 @@ void play_mission(const geometry::SensorCluster& cluster, const Mission& mission
     ++tally.survived;
 }
 
-Tally play_block(const geometry::SensorCluster& cluster, const Mission& mission, const std::vector<Part>& parts, std::uint64_t seed, std::size_t block)
+Tally play_block(const geometry::SensorCluster& cluster, const Mission& mission, const std::vector<Part>& parts, std::uint64_t seed,
+                 std::size_t block)
 {
     std::seed_seq sequence{seed, static_cast<std::uint64_t>(block)};
     std::mt19937_64 random(sequence);
@@ -255,7 +256,8 @@ Survival survival_of(const std::vector<Tally>& tallies, double without_failure)
 
 }  // namespace
 
-tl::expected<Survival, std::string> survival(const geometry::SensorCluster& cluster, const Mission& mission, std::uint64_t seed, const ForEach& for_each)
+tl::expected<Survival, std::string> survival(const geometry::SensorCluster& cluster, const Mission& mission, std::uint64_t seed,
+                                             const ForEach& for_each)
 {
     geometry::SensorCluster array = cluster;
     array.interval_s = interval_s;

@@ -107,7 +107,8 @@ geometry::Axes tidied(geometry::Axes axes)
     std::vector<Vector3d> rows;
     for (Index axis = 0; axis < axes.rows(); ++axis) {
         Vector3d row = axes.row(axis);
-        const bool down = row.z() < -on_plane || (std::abs(row.z()) <= on_plane && (row.x() < -on_plane || (std::abs(row.x()) <= on_plane && row.y() < 0)));
+        const bool down = row.z() < -on_plane ||
+                          (std::abs(row.z()) <= on_plane && (row.x() < -on_plane || (std::abs(row.x()) <= on_plane && row.y() < 0)));
         rows.push_back(down ? Vector3d(-row) : row);
     }
     const auto place = [](const Vector3d& row) {

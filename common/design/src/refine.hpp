@@ -33,7 +33,8 @@ public:
     Eigen::VectorXd refine(const Arrangement& arrangement, const Eigen::VectorXd& start, const Aim& aim) const;
 
     /// By trial, for an objective without derivatives.
-    Eigen::VectorXd refine_blindly(const Arrangement& arrangement, const Eigen::VectorXd& start, Objective objective, const Yardstick& yardstick) const;
+    Eigen::VectorXd refine_blindly(const Arrangement& arrangement, const Eigen::VectorXd& start, Objective objective,
+                                   const Yardstick& yardstick) const;
 
 private:
     Terms terms(const geometry::Axes& axes, const Aim& aim) const;

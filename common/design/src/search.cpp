@@ -31,7 +31,12 @@ struct Found {
 class Search {
 public:
     Search(const Brief& brief, const SearchSettings& settings, const ForEach& for_each)
-        : brief_(brief), scaled_(brief.with_unit_noise()), settings_(settings), for_each_(for_each), refiner_(scaled_), yardstick_(Yardstick::of(brief, settings.seed))
+        : brief_(brief),
+          scaled_(brief.with_unit_noise()),
+          settings_(settings),
+          for_each_(for_each),
+          refiner_(scaled_),
+          yardstick_(Yardstick::of(brief, settings.seed))
     {
         yardstick_.fault_sizes = is_fault_size(settings.objective);
     }
@@ -179,7 +184,8 @@ private:
         if (kept.size() > most) kept.resize(most);
         for (const Found& found : kept) result.designs.push_back(finished(found));
         if (kept.empty() && !pool_.empty())
-            result.nearest.push_back(finished(*std::ranges::min_element(pool_, {}, [&](const Found& found) { return shortfall(found.figures, brief_); })));
+            result.nearest.push_back(
+                finished(*std::ranges::min_element(pool_, {}, [&](const Found& found) { return shortfall(found.figures, brief_); })));
         if (const auto played = play_missions(result.designs); !played) return played;
         if (settings_.objective == Objective::survival)
             std::ranges::stable_sort(result.designs, {}, [](const Design& design) { return cost(design.figures, Objective::survival); });

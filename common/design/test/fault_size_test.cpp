@@ -88,7 +88,11 @@ Played played(const geometry::SensorCluster& cluster, std::size_t axis, double s
         squares += events * events;
         wrong += events > 0 ? 1 : 0;
         fdi::Assessment assessment;
-        detector->assess({.identity = {1, static_cast<std::uint64_t>(trial)}, .interval_s = 1, .increment = {z.data(), cluster.size()}, .valid = cluster.all()}, assessment);
+        detector->assess({.identity = {1, static_cast<std::uint64_t>(trial)},
+                          .interval_s = 1,
+                          .increment = {z.data(), cluster.size()},
+                          .valid = cluster.all()},
+                         assessment);
         const bool named = assessment.isolated == axis_bit(axis) && assessment.outcome == fdi::Outcome::isolated;
         disagreeing += named != (events == 0) ? 1 : 0;
     }
@@ -111,7 +115,8 @@ TEST(IsolationProbability, sums_the_ways_to_go_wrong_and_is_never_above_what_the
             const double sum = 1 - isolation_probability(space, 0, size, false_alarm);
             const Played frames = played(cluster, 0, size, false_alarm, trials, random);
             const double one_frame = 1.0 / trials;  // where hardly any event happens, its standard error is not known better
-            EXPECT_NEAR(sum, frames.events, confidence * std::max(frames.events_error, one_frame)) << layout << ", size " << size << ", seed " << seed;
+            EXPECT_NEAR(sum, frames.events, confidence * std::max(frames.events_error, one_frame))
+                << layout << ", size " << size << ", seed " << seed;
             EXPECT_GT(sum, frames.wrong - confidence * std::max(frames.wrong_error, one_frame)) << layout << ", size " << size << ", seed " << seed;
             // The detector also refuses frames whose rest exceeds the limit without the axis: at most false_alarm of them.
             const double refused = false_alarm + confidence * std::sqrt(false_alarm / trials);

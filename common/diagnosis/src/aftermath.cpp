@@ -24,8 +24,8 @@ constexpr double described_after_s = 1.0;
 
 bool tells_its_end(Diagnosis kind)
 {
-    return kind == Diagnosis::bias || kind == Diagnosis::outside_class || kind == Diagnosis::gain || kind == Diagnosis::sign || kind == Diagnosis::stuck ||
-           kind == Diagnosis::zero;
+    return kind == Diagnosis::bias || kind == Diagnosis::outside_class || kind == Diagnosis::gain || kind == Diagnosis::sign ||
+           kind == Diagnosis::stuck || kind == Diagnosis::zero;
 }
 
 double gain_of(const fdi::AxisDiagnosis& diagnosis)

@@ -20,7 +20,8 @@ Array::Array(const Mountings& mountings, const std::vector<recording::SurveyedIn
     calibrated_ = true;
     for (std::size_t m = 0; m < count; ++m) {
         One one{mountings.of[m].turned, mountings.of[m].scale};
-        const auto known = std::find_if(reference.begin(), reference.end(), [&](const Calibration& c) { return c.name == instruments[m].instrument.name; });
+        const auto known = std::find_if(reference.begin(), reference.end(),
+                                        [&](const Calibration& c) { return c.name == instruments[m].instrument.name; });
         calibrated_ = calibrated_ && known != reference.end();
         if (known != reference.end()) {
             one.turned = known->turned;

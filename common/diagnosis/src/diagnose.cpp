@@ -184,9 +184,10 @@ private:
     {
         const auto ratio = flexing.largest();
         if (!ratio || ratio->differing < 2) return;
-        report_.remarks.push_back(fmt::format("vibration above 5 Hz: {} {} shows {:.2f} of what the others show, below 5 Hz 1.00: separate boxes on a frame that flexes{}",
-                                              names_[ratio->instrument], "xyz"[ratio->axis], ratio->ratio,
-                                              report_.mount == fdi::Mount::structure ? "" : " (--mount structure)"));
+        report_.remarks.push_back(fmt::format(
+            "vibration above 5 Hz: {} {} shows {:.2f} of what the others show, below 5 Hz 1.00: separate boxes on a frame that flexes{}",
+            names_[ratio->instrument], "xyz"[ratio->axis], ratio -> ratio,
+            report_.mount == fdi::Mount::structure ? "" : " (--mount structure)"));
     }
 
     void detect(Array& array, Watch& watch, Plotter& plotter)
@@ -223,9 +224,10 @@ private:
             least = std::min(least, facts.figures.coverage);
         }
         if (partial.empty()) return;
-        report_.remarks.push_back(fmt::format("{} hold {:.0f} % of the motion: too little to integrate or to compare; log all gyros at full rate "
-                                              "(PX4: SDLOG_PROFILE with high rate and sensor comparison; ArduPilot: LOG_BITMASK with fast or raw IMU)",
-                                              list_of(partial), 100 * least));
+        report_.remarks.push_back(
+            fmt::format("{} hold {:.0f} % of the motion: too little to integrate or to compare; log all gyros at full rate "
+                        "(PX4: SDLOG_PROFILE with high rate and sensor comparison; ArduPilot: LOG_BITMASK with fast or raw IMU)",
+                        list_of(partial), 100 * least));
     }
 
     void remark_on_times()
@@ -234,13 +236,14 @@ private:
             const recording::SurveyedInstrument& instrument = survey_.instruments[i];
             const std::string& name = instrument.instrument.name;
             for (const recording::RateChange& change : instrument.rate_changes)
-                report_.remarks.push_back(fmt::format("{}: {:.1f} samples a second from {:.1f} s on, usually {:.1f}", name, change.rate_hz, change.from_s,
-                                                      instrument.figures.rate_hz()));
+                report_.remarks.push_back(fmt::format("{}: {:.1f} samples a second from {:.1f} s on, usually {:.1f}", name, change.rate_hz,
+                                                      change.from_s, instrument.figures.rate_hz()));
             if (!instrument.clock.own_clock) continue;
             const std::uint64_t lost = instrument.clock.lost;
-            report_.remarks.push_back(fmt::format("{}: stamps come up to {:.0f} ms late ({:.1f} ms for most); its samples were placed on its own clock{}", name,
-                                                  instrument.clock.late_most_s * 1e3, instrument.clock.late_median_s * 1e3,
-                                                  lost == 0 ? "" : fmt::format(", with room left for {}", counted(lost, "lost one"))));
+            report_.remarks.push_back(
+                fmt::format("{}: stamps come up to {:.0f} ms late ({:.1f} ms for most); its samples were placed on its own clock{}", name,
+                            instrument.clock.late_most_s * 1e3, instrument.clock.late_median_s * 1e3,
+                            lost == 0 ? "" : fmt::format(", with room left for {}", counted(lost, "lost one"))));
         }
     }
 
@@ -261,7 +264,8 @@ private:
                 for (const recording::SurveyedInstrument& instrument : survey_.instruments) {
                     if (instrument.log != log || instrument.instrument.device == 0 || instrument.instrument.device != selection.device) continue;
                     const double from_s = static_cast<double>(selection.time_ns - survey_.logs[log].first_ns) * 1e-9;
-                    report_.remarks.push_back(fmt::format("the vehicle flew by {} from {:.1f} s on", instrument.instrument.name, std::max(0.0, from_s)));
+                    report_.remarks.push_back(
+                        fmt::format("the vehicle flew by {} from {:.1f} s on", instrument.instrument.name, std::max(0.0, from_s)));
                     break;
                 }
     }

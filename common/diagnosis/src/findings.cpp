@@ -70,7 +70,8 @@ Finding finding_of(const fdi::AxisDiagnosis& diagnosis, std::size_t instrument, 
     finding.instrument = instrument;
     finding.axis = axis;
     finding.kind = kind_of(diagnosis.kind);
-    const bool sized = finding.kind != Kind::stuck && finding.kind != Kind::zero && diagnosis.kind != Diagnosis::erratic && diagnosis.kind != Diagnosis::none;
+    const bool sized = finding.kind != Kind::stuck && finding.kind != Kind::zero && diagnosis.kind != Diagnosis::erratic &&
+                       diagnosis.kind != Diagnosis::none;
     finding.size = sized ? diagnosis.size * factor_of(finding.kind) : unknown;
     finding.uncertainty = sized && diagnosis.sigma > 0 ? diagnosis.sigma * factor_of(finding.kind) : unknown;
     const bool bias_besides = finding.kind == Kind::gain || finding.kind == Kind::sign || finding.kind == Kind::delay;
@@ -170,7 +171,9 @@ private:
     {
         const auto rest = evidence_.overview.longest_rest();
         if (!rest || rest->from_s < finding.from_s - 1e-6 || rest->to_s > finding.to_s.value_or(1e300) || !finding.axis) return std::nullopt;
-        const auto bias_in_common = [&](std::size_t m) { return Eigen::Vector3d(evidence_.mountings.of[m].turned * *evidence_.overview.rest_bias(m)); };
+        const auto bias_in_common = [&](std::size_t m) {
+            return Eigen::Vector3d(evidence_.mountings.of[m].turned * *evidence_.overview.rest_bias(m));
+        };
         Eigen::Vector3d others = Eigen::Vector3d::Zero();
         double used = 0;
         for (std::size_t m = 0; m < evidence_.instruments.size(); ++m) {
@@ -179,13 +182,15 @@ private:
             used += 1;
         }
         if (used == 0 || !evidence_.overview.rest_bias(*finding.instrument)) return std::nullopt;
-        const Eigen::Vector3d beyond = evidence_.mountings.of[*finding.instrument].turned.transpose() * (bias_in_common(*finding.instrument) - others / used);
+        const Eigen::Vector3d beyond =
+            evidence_.mountings.of[*finding.instrument].turned.transpose() * (bias_in_common(*finding.instrument) - others / used);
         return beyond(static_cast<Eigen::Index>(*finding.axis)) / degree;
     }
 
     bool is_isolated(std::size_t m) const
     {
-        return std::any_of(evidence_.watch.isolations().begin(), evidence_.watch.isolations().end(), [&](const Isolation& i) { return i.instrument == m; });
+        return std::any_of(evidence_.watch.isolations().begin(), evidence_.watch.isolations().end(),
+                           [&](const Isolation& i) { return i.instrument == m; });
     }
 
     /// What the detector has not named already.
@@ -285,7 +290,8 @@ private:
     {
         return std::any_of(found_.begin(), found_.end(), [&](const Finding& finding) {
             const bool among = finding.instrument && std::find(candidates.begin(), candidates.end(), *finding.instrument) != candidates.end();
-            return among && finding.certainty == Certainty::isolated && finding.from_s <= spell.from_s + belongs_s && finding.to_s.value_or(1e300) >= spell.from_s;
+            return among && finding.certainty == Certainty::isolated && finding.from_s <= spell.from_s + belongs_s &&
+                   finding.to_s.value_or(1e300) >= spell.from_s;
         });
     }
 

@@ -44,7 +44,9 @@ void OwnEvidence::add(double begin_s, double end_s, std::span<const Compared> fr
 void OwnEvidence::end(std::size_t place, bool log_ends)
 {
     const Axis& axis = axes_[place];
-    if (!axis.known || axis.last_s - axis.since_s < least_stuck_s || axis.largest - axis.least < moved_rad_s || stuck_.size() >= most_stuck_spells) return;
+    if (!axis.known || axis.last_s - axis.since_s < least_stuck_s || axis.largest - axis.least < moved_rad_s ||
+        stuck_.size() >= most_stuck_spells)
+        return;
     stuck_.push_back({place / 3, place % 3, axis.value, axis.since_s, log_ends ? std::nullopt : std::optional(axis.last_s)});
 }
 

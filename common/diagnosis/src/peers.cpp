@@ -66,12 +66,16 @@ std::vector<PeerFinding> Peers::findings(const std::vector<std::string>& names) 
         px4.finding = "compares three gyros or more: no verdict with fewer";
     }
     found.push_back(px4);
-    PeerFinding ardupilot{"ArduPilot", "would have armed: before the first motion all gyros are within 5 deg/s of the first one (in flight it does not compare them)", std::nullopt};
+    PeerFinding ardupilot{
+        "ArduPilot",
+        "would have armed: before the first motion all gyros are within 5 deg/s of the first one (in flight it does not compare them)",
+        std::nullopt};
     if (names.size() < 2) ardupilot.finding = "has one gyro: nothing to compare";
     else if (!(rest_until_s_ > 0)) ardupilot.finding = "compares gyros before arming only, and the log begins in motion";
     if (const auto& refusal = ardupilot_.refusal()) {
-        ardupilot.finding = fmt::format("would have refused to arm: {} differs from {} by {:.1f} deg/s as logged, more than 5 (in flight it does not compare them)",
-                                        names[refusal->gyro], names.front(), refusal->difference_rad_s / degree);
+        ardupilot.finding = fmt::format(
+            "would have refused to arm: {} differs from {} by {:.1f} deg/s as logged, more than 5 (in flight it does not compare them)",
+            names[refusal->gyro], names.front(), refusal->difference_rad_s / degree);
         ardupilot.at_s = refusal->at_s;
     }
     found.push_back(ardupilot);

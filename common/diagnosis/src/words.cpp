@@ -71,7 +71,8 @@ std::string size_words(const Finding& finding)
         case Kind::delay: return known ? "is late by " + sized(finding.size * 1e3, finding.uncertainty * 1e3, 1) + " ms" : "is late";
         case Kind::stuck: return "is stuck at one value";
         case Kind::zero: return "is stuck at 0";
-        case Kind::saturated: return finding.instrument ? "is at its range" : "are at their range together (the attitude cannot be trusted from there on)";
+        case Kind::saturated:
+            return finding.instrument ? "is at its range" : "are at their range together (the attitude cannot be trusted from there on)";
         case Kind::noise: return known ? fmt::format("has {:.0f} times its usual noise", finding.size) : "comes and goes";
         case Kind::spikes: return known ? fmt::format("has spikes of {:.0f} deg/s", finding.size) : "has spikes";
         case Kind::mounting: return known ? fmt::format("is mounted {:.0f} degrees off", finding.size) : "is mounted wrongly";
@@ -100,9 +101,11 @@ std::vector<InstrumentIndex> compared_of(const Report& report)
 
 std::string without_comparison(const Report& report, const std::vector<InstrumentIndex>& compared)
 {
-    if (report.instruments.size() == 1) return fmt::format("The log holds one gyro, {}: there is nothing to compare it with.", report.instruments.front().name);
+    if (report.instruments.size() == 1)
+        return fmt::format("The log holds one gyro, {}: there is nothing to compare it with.", report.instruments.front().name);
     const auto partly = std::count_if(report.instruments.begin(), report.instruments.end(), [](const InstrumentFacts& f) { return !f.compared; });
-    std::string sentence = compared.empty() ? "No gyro was logged at full rate" : fmt::format("Only {} was logged at full rate", report.instruments[compared.front()].name);
+    std::string sentence = compared.empty() ? "No gyro was logged at full rate"
+                                            : fmt::format("Only {} was logged at full rate", report.instruments[compared.front()].name);
     sentence += compared.empty() ? ": nothing can be compared." : ": there is nothing to compare it with.";
     if (partly > 0) sentence += fmt::format(" Log all gyros at full rate to get a verdict ({} hold a part of the motion only).", partly);
     return sentence;
@@ -131,8 +134,11 @@ std::string faulty_sentence(const Report& report, const std::vector<InstrumentIn
     std::string sentence = statement_of(first, report) + ".";
     std::set<InstrumentIndex> also;
     for (const Finding& finding : report.findings)
-        if (finding.certainty == Certainty::isolated && finding.instrument && finding.instrument != first.instrument) also.insert(*finding.instrument);
-    if (!also.empty()) sentence += fmt::format(" {} too {} faulty.", list_of(names_of({also.begin(), also.end()}, report)), also.size() == 1 ? "is" : "are");
+        if (finding.certainty == Certainty::isolated && finding.instrument && finding.instrument != first.instrument)
+            also.insert(*finding.instrument);
+    if (!also.empty())
+        sentence +=
+            fmt::format(" {} too {} faulty.", list_of(names_of({also.begin(), also.end()}, report)), also.size() == 1 ? "is" : "are");
     return sentence + others_agree(report, compared);
 }
 
@@ -143,8 +149,10 @@ std::string healthy_sentence(const Report& report, const std::vector<InstrumentI
         sentence += fmt::format(" For {:.0f} s besides, the log holds nothing.", report.duration_s - report.logged_s());
     if (report.findings.empty()) return sentence;
     const Finding& first = report.findings.front();
-    const std::string where = first.instrument ? report.instruments[*first.instrument].name : "between " + list_of(names_of(first.candidates, report));
-    return sentence + fmt::format(" {} passed (the clearest: {}, {}).", counted(report.findings.size(), "short disagreement"), where, time_of(first, report));
+    const std::string where =
+        first.instrument ? report.instruments[*first.instrument].name : "between " + list_of(names_of(first.candidates, report));
+    return sentence + fmt::format(" {} passed (the clearest: {}, {}).", counted(report.findings.size(), "short disagreement"), where,
+                                  time_of(first, report));
 }
 
 }  // namespace

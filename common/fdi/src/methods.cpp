@@ -82,8 +82,9 @@ std::span<const Method> methods()
 {
     using enum MethodInput;
     static const std::vector<Method> table{
-        {"auto", "4 to 24", "vector on four axes; field on three or more triads, and on five or more single axes whose noise nobody states; else subset where "
-         "faults take instruments; else glt",
+        {"auto", "4 to 24",
+         "vector on four axes; field on three or more triads, and on five or more single axes whose noise nobody states; "
+         "else subset where faults take instruments; else glt",
          MethodInput::rows, {}, "", make_automatic},
         {"guaranteed", "max_faults + 4 to 8", "set-membership estimation: never wrong while noise stays within its bound", row,
          {"bound", "threshold", "max-faults", "direction"},

@@ -313,7 +313,8 @@ TEST(FieldDetector, leaves_nobody_out_while_some_of_equal_ranges_reach_theirs_be
         FieldScene scene(instruments, 18, {.gain = 0.012});
         // So slowly to the range and back that gains decide for a while which instruments are near it.
         scene.motion = [](double t) -> Eigen::Vector3d {
-            return FieldScene::flight(t) + Eigen::Vector3d(0, 0, t > 8 && t < 28 ? FieldScene::range_deg_s * std::sin(std::numbers::pi * (t - 8) / 20) : 0);
+            return FieldScene::flight(t) +
+                   Eigen::Vector3d(0, 0, t > 8 && t < 28 ? FieldScene::range_deg_s * std::sin(std::numbers::pi * (t - 8) / 20) : 0);
         };
         unsigned near_range = 0;
         unsigned unanimous = 0;

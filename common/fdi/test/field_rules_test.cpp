@@ -170,9 +170,8 @@ TEST(FieldRules, smallest_angle_leaves_nothing_out_that_cannot_matter_to_the_att
 TEST(FieldRules, erratic_finds_noise_that_no_window_shows)
 {
     const Scene scene{[](std::uint64_t seed) {
-                          return spoiled(seed, from_onset([random = std::mt19937_64(seed), noise = std::normal_distribution<double>(0, 4)](auto& rates) mutable {
-                              rates[7] += noise(random);
-                          }));
+                          return spoiled(seed, from_onset([random = std::mt19937_64(seed), noise = std::normal_distribution<double>(0, 4)](
+                                                              auto& rates) mutable { rates[7] += noise(random); }));
                       },
                       18, axes_of(2)};
     EXPECT_EQ(play_all(scene).named_faulty, seeds);
@@ -194,12 +193,14 @@ TEST(FieldRules, outside_class_names_a_resting_bias_that_no_sound_instrument_has
 TEST(FieldRules, fast_lane_leaves_a_small_fault_of_a_calibrated_array_out_sooner)
 {
     const Scene scene{[](std::uint64_t seed) {
-                          FieldScene calibrated =
-                              spoiled(seed, from_onset([](auto& rates) { rates[4] += 1; }), Differences{.bias_deg_s = 0, .gain = 0, .delay_s = 0, .drift_deg_s = 0});
+                          FieldScene calibrated = spoiled(seed, from_onset([](auto& rates) { rates[4] += 1; }),
+                                                          Differences{.bias_deg_s = 0, .gain = 0, .delay_s = 0, .drift_deg_s = 0});
                           calibrated.cluster.sigma.setConstant(0.11 * degree * frame_s);
                           return calibrated;
                       },
-                      20, axes_of(1), {.motion_noise = 1.0, .calibrated = true}};
+                      20,
+                      axes_of(1),
+                      {.motion_noise = 1.0, .calibrated = true}};
     const Outcomes with = play_all(scene);
     const Outcomes without = play_all(scene, &FieldRules::fast_lane);
     EXPECT_EQ(with.named_sound, 0U);
@@ -246,7 +247,8 @@ TEST(FieldRules, saturation_blames_nobody_where_all_are_at_their_range)
     const Scene scene{[](std::uint64_t seed) {
                           FieldScene spinning(3, seed);
                           spinning.motion = [](double t) -> Eigen::Vector3d {
-                              return FieldScene::flight(t) + Eigen::Vector3d(0, 0, t > 8 && t < 15 ? 3000 * std::sin(std::numbers::pi * (t - 8) / 7) : 0);
+                              return FieldScene::flight(t) +
+                                     Eigen::Vector3d(0, 0, t > 8 && t < 15 ? 3000 * std::sin(std::numbers::pi * (t - 8) / 7) : 0);
                           };
                           return spinning;
                       },

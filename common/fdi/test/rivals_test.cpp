@@ -85,7 +85,8 @@ TEST_P(Rivals, are_looked_for_before_an_axis_is_named)
             const auto assessment = assess(*detector, z);
             if (assessment.outcome != Outcome::isolated) continue;
             ++named;
-            EXPECT_FALSE(has_rival(cluster, z, assessment.isolated)) << "faults on axes " << int{axes.item[0]} << " and " << int{axes.item[1]} << ", ratio " << ratio;
+            EXPECT_FALSE(has_rival(cluster, z, assessment.isolated))
+                << "faults on axes " << int{axes.item[0]} << " and " << int{axes.item[1]} << ", ratio " << ratio;
         }
     });
     EXPECT_GT(named, 0U) << "a method that names nobody keeps any promise";

@@ -33,7 +33,9 @@ public:
     /// A rest of so many seconds, then a flight.
     static std::function<Eigen::Vector3d(double)> flight_after(double seconds)
     {
-        return [seconds](double t) -> Eigen::Vector3d { return t < seconds ? rest(t) : Eigen::Vector3d(flight(t - seconds) * std::min(1.0, t - seconds)); };
+        return [seconds](double t) -> Eigen::Vector3d {
+            return t < seconds ? rest(t) : Eigen::Vector3d(flight(t - seconds) * std::min(1.0, t - seconds));
+        };
     }
 
     std::function<Eigen::Vector3d(double)> motion = flight_after(2);  ///< the body's [deg/s]

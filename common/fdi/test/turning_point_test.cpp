@@ -59,7 +59,8 @@ Count over_all_phases(const Fault& fault)
     Count count;
     for (int phase = 0; phase < phases; ++phase)
         for (std::size_t axis = 0; axis < 4; ++axis, ++count.runs) {
-            const AxisMask found = isolated({.begin_s = phase * period_s / phases, .faulty = axis, .seed = static_cast<std::uint64_t>(count.runs)}, fault);
+            const AxisMask found =
+                isolated({.begin_s = phase * period_s / phases, .faulty = axis, .seed = static_cast<std::uint64_t>(count.runs)}, fault);
             if (has_axis(found, axis)) ++count.named;
             if ((found & ~axis_bit(axis)) != 0) ++count.blamed;
         }

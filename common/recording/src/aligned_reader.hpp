@@ -13,6 +13,7 @@ tl::expected<std::unique_ptr<Reader>, std::string> open_aligned(const std::files
                                                                   std::vector<std::string>& remarks);
 
 /// open_log of a log that may need options.
-tl::expected<std::unique_ptr<Reader>, std::string> open_log(const std::filesystem::path& file, const LogOptions& options, std::vector<std::string>& remarks);
+tl::expected<std::unique_ptr<Reader>, std::string> open_log(const std::filesystem::path& file, const LogOptions& options,
+                                                            std::vector<std::string>& remarks);
 
 }  // namespace quorient::recording

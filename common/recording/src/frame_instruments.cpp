@@ -79,7 +79,8 @@ tl::expected<std::unique_ptr<InstrumentLog>, std::string> frame_instruments(std:
     bool triads = description.axis_count == 3 * description.instrument_count;
     for (std::size_t axis = 0; axis < description.axis_count; ++axis) triads = triads && description.instrument[axis] == axis / 3;
     if (!triads)
-        return tl::unexpected(fmt::format("{}: a record of {} single axes, and instruments are compared by three; replay reads it", name, description.axis_count));
+        return tl::unexpected(fmt::format("{}: a record of {} single axes, and instruments are compared by three; replay reads it", name,
+                                          description.axis_count));
     return std::make_unique<FrameInstruments<mcap::FrameReader>>(std::move(frames), "Quorient's record");
 }
 

@@ -79,18 +79,25 @@ struct TimeCase {
 
 TEST(CsvLog, reads_times_in_every_unit_named_or_not_and_says_what_it_judged)
 {
-    const std::vector<TimeCase> cases{{"time_s", {"12.5", "12.51", "12.52"}, 12'500'000'000, 10'000'000, false},
-                                      {"t [ms]", {"12500", "12510", "12520"}, 12'500'000'000, 10'000'000, false},
-                                      {"TimeUS", {"12500000", "12510000", "12520000"}, 12'500'000'000, 10'000'000, false},
-                                      {"t", {"1713722594469036102", "1713722594478036102", "1713722594487036102"}, 1713722594469036102, 9'000'000, true},
-                                      {"ts", {"118892", "118902", "118912"}, 118'892'000'000, 10'000'000, true},
-                                      {"timestamp", {"4000", "8000", "12000"}, 4'000'000, 4'000'000, true},
-                                      {"t", {"-0.331", "-0.321", "-0.311"}, -331'000'000, 10'000'000, true},
-                                      {"time", {"1.5e1", "1.501e1", "1.502e1"}, 15'000'000'000, 10'000'000, true},
-                                      {"time", {"2024-05-01T12:00:00.250Z", "2024-05-01T12:00:00.260Z", "2024-05-01T12:00:00.270Z"},
-                                       1714564800250000000, 10'000'000, false},
-                                      {"time", {"2024-05-01 14:00:00.25+02:00", "2024-05-01 14:00:00.26+02:00", "2024-05-01 14:00:00.27+02:00"},
-                                       1714564800250000000, 10'000'000, false}};
+    const std::vector<TimeCase> cases{
+        {"time_s", {"12.5", "12.51", "12.52"}, 12'500'000'000, 10'000'000, false},
+        {"t [ms]", {"12500", "12510", "12520"}, 12'500'000'000, 10'000'000, false},
+        {"TimeUS", {"12500000", "12510000", "12520000"}, 12'500'000'000, 10'000'000, false},
+        {"t", {"1713722594469036102", "1713722594478036102", "1713722594487036102"}, 1713722594469036102, 9'000'000, true},
+        {"ts", {"118892", "118902", "118912"}, 118'892'000'000, 10'000'000, true},
+        {"timestamp", {"4000", "8000", "12000"}, 4'000'000, 4'000'000, true},
+        {"t", {"-0.331", "-0.321", "-0.311"}, -331'000'000, 10'000'000, true},
+        {"time", {"1.5e1", "1.501e1", "1.502e1"}, 15'000'000'000, 10'000'000, true},
+        {"time",
+         {"2024-05-01T12:00:00.250Z", "2024-05-01T12:00:00.260Z", "2024-05-01T12:00:00.270Z"},
+         1714564800250000000,
+         10'000'000,
+         false},
+        {"time",
+         {"2024-05-01 14:00:00.25+02:00", "2024-05-01 14:00:00.26+02:00", "2024-05-01 14:00:00.27+02:00"},
+         1714564800250000000,
+         10'000'000,
+         false}};
     for (const TimeCase& given : cases) {
         SCOPED_TRACE(std::string(given.header) + " " + given.cells[0]);
         std::string text = std::string(given.header) + ",gx_dps,gy_dps,gz_dps\n";
@@ -138,7 +145,8 @@ TEST(CsvLog, reads_wide_and_long_tables_alike)
 
 TEST(CsvLog, leaves_out_what_a_row_does_not_hold)
 {
-    const Samples log = samples_of(std::string("t_s,g0x_dps,g0y_dps,g0z_dps,g1x_dps,g1y_dps,g1z_dps\n1.00,1,2,3,,,\n1.01,1,nan,3,4,5,6\n1.02,,,,4,5,6\n"));
+    const Samples log =
+        samples_of(std::string("t_s,g0x_dps,g0y_dps,g0z_dps,g1x_dps,g1y_dps,g1z_dps\n1.00,1,2,3,,,\n1.01,1,nan,3,4,5,6\n1.02,,,,4,5,6\n"));
     EXPECT_EQ(log.of("g0").size(), 2U);
     EXPECT_EQ(log.of("g1").size(), 2U);
     EXPECT_TRUE(std::isnan(log.of("g0")[1].rate_rad_s[1]));
@@ -272,7 +280,8 @@ TEST(CsvLog, reads_the_units_below_the_names_also_beside_columns_with_units_of_o
 
 TEST(CsvLog, reads_points_between_thousands_where_commas_are_decimal)
 {
-    const Samples log = samples_of(std::string("t (ms);gx (deg/s);gy (deg/s);gz (deg/s)\n990;0,5;1.000,5;2\n1.000;0,5;1,5;-1.234\n1.010;0,5;1,5;2,5\n"));
+    const Samples log =
+        samples_of(std::string("t (ms);gx (deg/s);gy (deg/s);gz (deg/s)\n990;0,5;1.000,5;2\n1.000;0,5;1,5;-1.234\n1.010;0,5;1,5;2,5\n"));
     ASSERT_EQ(log.samples.size(), 3U);
     EXPECT_EQ(log.samples[1].time_ns, 1'000'000'000);
     EXPECT_NEAR(log.samples[0].rate_rad_s[1] / degree, 1000.5, 1e-9);

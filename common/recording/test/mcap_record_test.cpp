@@ -301,7 +301,9 @@ TEST_F(McapRecordFile, is_opened_as_a_log_of_frames)
 TEST_F(McapRecordFile, of_several_is_one_log_whatever_the_order_of_their_names)
 {
     const auto frames = frames_of(90);
-    const auto part = [&](std::size_t begin, std::size_t end) { return record_of({frames.begin() + static_cast<std::ptrdiff_t>(begin), frames.begin() + static_cast<std::ptrdiff_t>(end)}); };
+    const auto part = [&](std::size_t begin, std::size_t end) {
+        return record_of({frames.begin() + static_cast<std::ptrdiff_t>(begin), frames.begin() + static_cast<std::ptrdiff_t>(end)});
+    };
     const std::vector<std::filesystem::path> files{write("b.mcap", part(62, 90)), write("a.mcap", part(0, 30)), write("c.mcap", part(29, 60))};
     const auto merged = open_logs(files);
     ASSERT_TRUE(merged) << merged.error();

@@ -47,7 +47,8 @@ std::vector<AlignedFrame> aligned(const std::vector<Source>& sources, std::size_
         const double t = next_s[soonest];
         if (t > 1e6) break;
         next_s[soonest] = t + source.period_s > source.end_s ? 1e9 : t + source.period_s;
-        const bool silent = std::any_of(source.silent.begin(), source.silent.end(), [&](const auto& spell) { return t > spell.first && t < spell.second; });
+        const bool silent =
+            std::any_of(source.silent.begin(), source.silent.end(), [&](const auto& spell) { return t > spell.first && t < spell.second; });
         if (silent) continue;
         const double rate = (angle(t) - angle(t - source.period_s)) / source.period_s;
         resampler.add(soonest, std::llround(t * 1e9), sample_of({rate, 1.0, static_cast<double>(soonest)}));

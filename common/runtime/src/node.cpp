@@ -152,7 +152,8 @@ void Node::refuse(const FaultCommand& order)
 {
     const auto* rule = rule_for(action_of(order));
     report(EventCode::command_refused, Severity::warning_high, {status_.epoch, status_.sequence}, order.axes,
-           fmt::format("refuses {} from {}: the system file has commands.{}: refused", rule->word, describe(orders_->sender()), rule->key), order.request);
+           fmt::format("refuses {} from {}: the system file has commands.{}: refused", rule->word, describe(orders_->sender()), rule->key),
+           order.request);
 }
 
 /// Requests are numbered by who gives them; 0 is nobody's number.
@@ -241,8 +242,12 @@ void Node::look_at_identity()
     expiry_reported_ns_ = clock().steady_ns();
     const bool expired = left_ns <= 0;
     report(EventCode::identity_expires, expired ? Severity::warning_high : Severity::warning_low, {status_.epoch, status_.sequence}, 0,
-           expired ? fmt::format("its certificate has expired: processes that start from now on refuse it; quorient keys --renew {}, then restart it", settings_.name)
-                   : fmt::format("its certificate expires in {} days: quorient keys --renew {}, then restart it", left_ns / day_ns, settings_.name));
+           expired
+               ? fmt::format(
+                     "its certificate has expired: processes that start from now on refuse it; quorient keys --renew {}, then restart it",
+                     settings_.name)
+               : fmt::format("its certificate expires in {} days: quorient keys --renew {}, then restart it", left_ns / day_ns,
+                             settings_.name));
 }
 
 void Node::look_at_refusals()

@@ -49,12 +49,14 @@ void Shedding::report(const Stream& seen, std::int64_t now_ns)
         reported_ = true;
         begin_ns_ = now_ns;
         skipped_before_ = skipped_;
-        const std::string why = &seen == &input_             ? fmt::format("frames are {:.0f} ms old", static_cast<double>(seen.age_ns) * 1e-6)
-                                : pace_of_voted_.is_shed() ? "the voters leave frames out"
-                                                           : fmt::format("voted attitudes are {:.0f} ms old", static_cast<double>(seen.age_ns) * 1e-6);
-        node_.report(EventCode::overloaded, Severity::warning_high, seen.newest, 0,
-                     fmt::format("OVERLOADED: {}. One in {} of this service's {} goes out at most. Lower the rate, compose, or add processors", why, Pace::kept_of,
-                                 outputs_));
+        const std::string why = &seen == &input_ ? fmt::format("frames are {:.0f} ms old", static_cast<double>(seen.age_ns) * 1e-6)
+                                : pace_of_voted_.is_shed()
+                                    ? "the voters leave frames out"
+                                    : fmt::format("voted attitudes are {:.0f} ms old", static_cast<double>(seen.age_ns) * 1e-6);
+        node_.report(
+            EventCode::overloaded, Severity::warning_high, seen.newest, 0,
+            fmt::format("OVERLOADED: {}. One in {} of this service's {} goes out at most. Lower the rate, compose, or add processors", why,
+                        Pace::kept_of, outputs_));
     } else if (reported_ && input_.keeps_up() && voted_.keeps_up()) {
         reported_ = false;
         node_.report(EventCode::overloaded, Severity::info, seen.newest, 0,

@@ -103,7 +103,9 @@ void read_beside(const std::function<void()>& write, const std::function<void()>
     std::thread writer([&] {
         while (!over) write();
     });
-    for (const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds{500}; std::chrono::steady_clock::now() < end && !testing::Test::HasFailure();) read();
+    for (const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds{500};
+         std::chrono::steady_clock::now() < end && !testing::Test::HasFailure();)
+        read();
     over = true;
     writer.join();
 }

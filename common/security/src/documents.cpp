@@ -63,7 +63,8 @@ void topic_rule(XMLPrinter& xml, bus::SecurityLevel level)
     xml.OpenElement("topic_access_rules");
     xml.OpenElement("topic_rule");
     text(xml, "topic_expression", "*");
-    for (const char* name : {"enable_discovery_protection", "enable_liveliness_protection", "enable_read_access_control", "enable_write_access_control"})
+    for (const char* name :
+         {"enable_discovery_protection", "enable_liveliness_protection", "enable_read_access_control", "enable_write_access_control"})
         text(xml, name, "true");
     text(xml, "metadata_protection_kind", protection(level));
     text(xml, "data_protection_kind", "NONE");  // the protected submessage contains the payload

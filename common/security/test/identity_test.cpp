@@ -142,7 +142,8 @@ TEST_F(IdentityTest, tells_permissions_that_a_member_wrote_itself)
 TEST_F(IdentityTest, tells_another_domain_and_another_level)
 {
     joining.domain = 43;
-    EXPECT_THAT(problems(), ElementsAre(AllOf(HasSubstr("governance.p7s"), HasSubstr("domain 42")), AllOf(HasSubstr("permissions.p7s"), HasSubstr("domain 42"))));
+    EXPECT_THAT(problems(), ElementsAre(AllOf(HasSubstr("governance.p7s"), HasSubstr("domain 42")),
+                                        AllOf(HasSubstr("permissions.p7s"), HasSubstr("domain 42"))));
     joining.domain = 42;
     joining.level = bus::SecurityLevel::sign;
     EXPECT_THAT(problems(), ElementsAre(AllOf(HasSubstr("governance.p7s"), HasSubstr("level is encrypt"))));
@@ -161,7 +162,8 @@ TEST_F(IdentityTest, tells_files_that_are_something_else)
     ASSERT_TRUE(write_file(layout.key("fdi-a"), "no key", 0600));
     ASSERT_TRUE(write_file(layout.revoked(), "no list", 0644));
     ASSERT_TRUE(write_file(layout.governance(), "no document", 0644));
-    EXPECT_THAT(problems(), ElementsAre(HasSubstr("revoked.pem: is not"), HasSubstr("governance.p7s: it is not a signed document"), HasSubstr("key.pem: is not")));
+    EXPECT_THAT(problems(), ElementsAre(HasSubstr("revoked.pem: is not"), HasSubstr("governance.p7s: it is not a signed document"),
+                                        HasSubstr("key.pem: is not")));
 }
 
 TEST_F(IdentityTest, shows_no_key_in_what_it_tells)

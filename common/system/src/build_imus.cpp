@@ -89,8 +89,10 @@ void build_imus(const SourceSection& source, System& system, Report& report)
     settings.skew_s = source.skew_s;
     const bool learns = system.sensor.kind == SensorKind::gyro && source.calibration.empty();
     settings.rest_s = source.rest_s.value_or(learns ? settings.rest_s : 0);
-    if (settings.rest_s > 0 && system.sensor.kind != SensorKind::gyro) report.at("source.rest_s", "is for gyros: accelerometers measure gravity at rest");
-    if (settings.rest_s > 0 && !source.calibration.empty()) report.at("source.rest_s", "the biases are those of the calibration: leave one of both out");
+    if (settings.rest_s > 0 && system.sensor.kind != SensorKind::gyro)
+        report.at("source.rest_s", "is for gyros: accelerometers measure gravity at rest");
+    if (settings.rest_s > 0 && !source.calibration.empty())
+        report.at("source.rest_s", "the biases are those of the calibration: leave one of both out");
     std::set<std::string> topics;
     for (std::size_t i = 0; i < source.imus.size(); ++i) {
         const auto& imu = source.imus[i];

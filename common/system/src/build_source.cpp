@@ -89,7 +89,8 @@ void check_faults(const SourceSection& source, const geometry::SensorCluster& cl
 
 void build_vessel_source(SourceSection& source, System& system, Report& report)
 {
-    if (source.kind != SourceSection::Kind::simulation) report.at("source.kind", "a vessel's rates come from a simulation: no log format holds a rudder");
+    if (source.kind != SourceSection::Kind::simulation)
+        report.at("source.kind", "a vessel's rates come from a simulation: no log format holds a rudder");
     auto& scenario = system.sensor.source.vessel.emplace(source.vessel);
     scenario.channels = system.channels;
     scenario.interval_s = system.interval_s;

@@ -32,7 +32,8 @@ private:
 
 TEST_F(AxesFile, gives_axes_and_instruments)
 {
-    const auto cluster = load_axes_file(written("axes.yaml", "axes:\n  - [1, 0, 0]\n  - [0, 1, 0]\n  - [0, 0, 1]\n  - [0, 0.6, 0.8]\ninstrument: [0, 0, 0, 1]\n"));
+    const auto cluster = load_axes_file(
+        written("axes.yaml", "axes:\n  - [1, 0, 0]\n  - [0, 1, 0]\n  - [0, 0, 1]\n  - [0, 0.6, 0.8]\ninstrument: [0, 0, 0, 1]\n"));
     ASSERT_TRUE(cluster) << cluster.error();
     EXPECT_EQ(cluster->size(), 4U);
     EXPECT_EQ(cluster->axes(3, 1), 0.6);
@@ -44,7 +45,8 @@ TEST_F(AxesFile, says_where_it_is_wrong)
     EXPECT_THAT(problem_with("axes:\n  - [1, 0, 0]\n  - [0, 1]\n  - [0, 0, x]\n"),
                 testing::AllOf(HasSubstr("axes.yaml:3:5: axis 1 must be [x, y, z]"), HasSubstr("axes.yaml:4:12: axis 2 has a component")));
     EXPECT_THAT(problem_with("axes:\n  - [1, 0, 0]\n  - [0, 2, 0]\n  - [0, 0, 1]\n"), HasSubstr("axes.yaml:3:5: axis 1: norm 2"));
-    EXPECT_THAT(problem_with("axes:\n  - [1, 0, 0]\n  - [0, 1, 0]\n  - [0, 0, 1]\ninstruments: [0, 1, 2]\n"), HasSubstr("did you mean 'instrument'?"));
+    EXPECT_THAT(problem_with("axes:\n  - [1, 0, 0]\n  - [0, 1, 0]\n  - [0, 0, 1]\ninstruments: [0, 1, 2]\n"),
+                HasSubstr("did you mean 'instrument'?"));
     EXPECT_THAT(problem_with("directions: []\n"), HasSubstr("expected `axes`"));
     EXPECT_THAT(problem_with("axes:\n  - [1, 0, 0]\n  - [0, 1, 0]\n  - [0.6, 0.8, 0]\n"), HasSubstr("all lie in one plane"));
 }

@@ -56,7 +56,8 @@ TEST(Compositions, have_one_bus)
     const auto vendors = with(simulation_file, "detector: {method: subset}", "detector: {method: subset}, dds: fastdds");
     EXPECT_THAT(refusal(vendors + "compose: [[fdi-a, fdi-b]]\n"), HasSubstr("'fdi-b' has another `dds` than 'fdi-a'"));
     EXPECT_EQ(refusal(vendors + "compose: [[fdi-b, attitude-b]]\n"), "accepted");
-    EXPECT_THAT(refusal(with(simulation_file, "detector: {method: subset}", "detector: {method: subset}, priority: 50") + "compose: [[fdi-a, fdi-b]]\n"),
+    EXPECT_THAT(refusal(with(simulation_file, "detector: {method: subset}", "detector: {method: subset}, priority: 50") +
+                        "compose: [[fdi-a, fdi-b]]\n"),
                 HasSubstr("'fdi-b' has another `priority` than 'fdi-a'"));
 }
 

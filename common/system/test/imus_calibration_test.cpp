@@ -53,11 +53,12 @@ protected:
                                                      const std::vector<std::string>& set = {})
     {
         std::ofstream(folder_ / "cluster.yaml") << calibration::to_yaml(cluster_);
-        std::ofstream(folder_ / "robot.yaml") << "domain: 1\nunit: {id: 1}\nsource:\n  kind: ros2_imu\n  imus:\n    - {topic: /imu_1/data, name: front}\n"
-                                              << "    - {topic: /imu_2/data, name: left, rotation: [0.7071067811865476, 0, 0, 0.7071067811865476]}\n"
-                                              << "    - {topic: /imu_3/data, name: rear}\n  " << more.substr(0, more.find(',')) << "\n"
-                                              << (more.find(',') == std::string::npos ? "" : "  " + more.substr(more.find(',') + 2) + "\n")
-                                              << "lanes:\n  - {name: a}\nvoters:\n  - {name: voter-1}\n";
+        std::ofstream(folder_ / "robot.yaml")
+            << "domain: 1\nunit: {id: 1}\nsource:\n  kind: ros2_imu\n  imus:\n    - {topic: /imu_1/data, name: front}\n"
+            << "    - {topic: /imu_2/data, name: left, rotation: [0.7071067811865476, 0, 0, 0.7071067811865476]}\n"
+            << "    - {topic: /imu_3/data, name: rear}\n  " << more.substr(0, more.find(',')) << "\n"
+            << (more.find(',') == std::string::npos ? "" : "  " + more.substr(more.find(',') + 2) + "\n")
+            << "lanes:\n  - {name: a}\nvoters:\n  - {name: voter-1}\n";
         system::Overrides overrides;
         overrides.set = set;
         return system::load((folder_ / "robot.yaml").string(), overrides);

@@ -75,7 +75,8 @@ TEST_P(Absence, costs_time_and_no_frame)
             Weaker weaker(GetParam());
             weaker.run(away, published);
             const auto given_out = weaker.given_out();
-            for (std::uint64_t sequence = lost_from + published; sequence + 5 < end; ++sequence) EXPECT_TRUE(given_out.contains(sequence)) << sequence;
+            for (std::uint64_t sequence = lost_from + published; sequence + 5 < end; ++sequence)
+                EXPECT_TRUE(given_out.contains(sequence)) << sequence;
             EXPECT_EQ(weaker.scene.voter.counters().gaps, 0U);
         }
     }
@@ -246,7 +247,8 @@ TEST(StandStillOfTheMachine, gives_the_owner_its_right_back_only_where_frames_wa
     const std::int64_t last = Scene::time_of(lost_from - 1);
     const std::int64_t listens_until = last + 110 * ms;  // it goes on after 60 ms, and listens for a lease of 50 ms
     for (const std::uint64_t first : {lost_from + 26, lost_from + 20}) {
-        SCOPED_TRACE(testing::Message() << "frames come again " << (Scene::time_of(first) - listens_until) / ms << " ms after the owner has listened");
+        SCOPED_TRACE(testing::Message() << "frames come again " << (Scene::time_of(first) - listens_until) / ms
+                                        << " ms after the owner has listened");
         Pair pair;
         pair.frames(0, lost_from - 1);
         pair.strong.stopped_until(last + 60 * ms);

@@ -101,7 +101,13 @@ struct WithToken : TokenFile, Serving {
 };
 
 struct WithFewThreads : Serving {
-    WithFewThreads() : Serving({.threads = 4, .streams = 2, .request_patience = std::chrono::milliseconds{300}, .write_patience = std::chrono::milliseconds{300}}) {}
+    WithFewThreads()
+        : Serving({.threads = 4,
+                   .streams = 2,
+                   .request_patience = std::chrono::milliseconds{300},
+                   .write_patience = std::chrono::milliseconds{300}})
+    {
+    }
 };
 
 int connected(int port)
@@ -345,8 +351,9 @@ TEST_F(WithFewThreads, a_request_that_does_not_end_is_given_up)
 TEST_F(WithFewThreads, garbage_gets_an_error_or_nothing_and_the_server_goes_on)
 {
     state_after(0);
-    for (const std::string& garbage : {std::string(1000, '\0'), std::string("\x16\x03\x01\x02", 4) + std::string(500, 'x') + "\r\n\r\n",
-                                       std::string("GET /../../etc/passwd HTTP/1.1\r\n\r\n"), std::string("GET ") + std::string(20000, 'a') + " HTTP/1.1\r\n\r\n"}) {
+    for (const std::string& garbage :
+         {std::string(1000, '\0'), std::string("\x16\x03\x01\x02", 4) + std::string(500, 'x') + "\r\n\r\n",
+          std::string("GET /../../etc/passwd HTTP/1.1\r\n\r\n"), std::string("GET ") + std::string(20000, 'a') + " HTTP/1.1\r\n\r\n"}) {
         const int socket = connected(site_.port());
         ::send(socket, garbage.data(), garbage.size(), MSG_NOSIGNAL);
         EXPECT_THAT(received(socket), Not(HasSubstr("200 OK")));

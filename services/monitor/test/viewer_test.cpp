@@ -120,6 +120,7 @@ TEST(ViewerServer, lets_programs_and_its_own_host_connect_but_no_page_of_another
 {
     for (const char* good : {"", "file://", "https://app.foxglove.dev", "http://localhost:8080", "http://127.0.0.1:8080", "http://192.0.2.7"})
         EXPECT_TRUE(ViewerServer::may_connect(good, "192.0.2.7")) << good;
-    for (const char* bad : {"null", "http://example.org", "https://app.foxglove.dev.example.org", "http://localhost.example.org", "http://127.0.0.1.example.org:80"})
+    for (const char* bad : {"null", "http://example.org", "https://app.foxglove.dev.example.org", "http://localhost.example.org",
+                            "http://127.0.0.1.example.org:80"})
         EXPECT_FALSE(ViewerServer::may_connect(bad, "192.0.2.7")) << bad;
 }

@@ -13,7 +13,8 @@ using recording::TimeUnit;
 
 constexpr std::array rate_units{std::pair{"rad/s", RateUnit::rad_s}, std::pair{"deg/s", RateUnit::deg_s}, std::pair{"mrad/s", RateUnit::mrad_s},
                                 std::pair{"mdeg/s", RateUnit::mdeg_s}};
-constexpr std::array time_units{std::pair{"s", TimeUnit::s}, std::pair{"ms", TimeUnit::ms}, std::pair{"us", TimeUnit::us}, std::pair{"ns", TimeUnit::ns}};
+constexpr std::array time_units{std::pair{"s", TimeUnit::s}, std::pair{"ms", TimeUnit::ms}, std::pair{"us", TimeUnit::us},
+                                std::pair{"ns", TimeUnit::ns}};
 
 template <class Unit, std::size_t Size>
 std::optional<Unit> unit_named(const std::optional<std::string>& name, const std::array<std::pair<const char*, Unit>, Size>& units)

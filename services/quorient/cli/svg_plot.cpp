@@ -20,7 +20,8 @@ constexpr double most_plot_ticks = 10;
 std::string frame_and_ticks(const Chart& chart, const Scale& x, const Scale& y, double offset)
 {
     const double base = offset + plot_height - plot_bottom;
-    std::string text = fmt::format("<text x='{}' y='{:.1f}' font-size='15'>{}</text>\n", plot_left, offset + plot_top - 14, markup_escaped(chart.title));
+    std::string text =
+        fmt::format("<text x='{}' y='{:.1f}' font-size='15'>{}</text>\n", plot_left, offset + plot_top - 14, markup_escaped(chart.title));
     text += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}</text>\n", (plot_left + plot_width - plot_right) / 2, base + 40,
                         markup_escaped(chart.x_label));
     text += fmt::format("<text transform='translate(18,{:.1f}) rotate(-90)' text-anchor='middle'>{}</text>\n", (offset + plot_top + base) / 2,

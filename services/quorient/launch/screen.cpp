@@ -37,9 +37,11 @@ std::string trouble_of(const system::System& system, const evaluation::RunObserv
         return fmt::format("SILENT since {:.1f} s", run.time_s(identity_of(lane.verdict)));
     const auto state = state_of(lane.verdict);
     if (state != VerdictState::healthy && state != VerdictState::isolated)
-        return lane.verdict.suspect_mask != 0 ? fmt::format("{} {}", to_string(state), run.names_of(lane.verdict.suspect_mask)) : std::string(to_string(state));
+        return lane.verdict.suspect_mask != 0 ? fmt::format("{} {}", to_string(state), run.names_of(lane.verdict.suspect_mask))
+                                              : std::string(to_string(state));
     const auto& voted = run.voted().latest;
-    if (!run.voted().heard || system.voters.empty()) return lane.verdict.isolated_mask == 0 ? "" : fmt::format("isolated {}", run.names_of(lane.verdict.isolated_mask));
+    if (!run.voted().heard || system.voters.empty())
+        return lane.verdict.isolated_mask == 0 ? "" : fmt::format("isolated {}", run.names_of(lane.verdict.isolated_mask));
     if (exclusion_of(voted, place) != LaneExclusion::none) return fmt::format("not counted by the voter: {}", to_string(exclusion_of(voted, place)));
     if (lane.verdict.isolated_mask == voted.isolated_mask) return "";
     return fmt::format("isolated {}, the output {}", run.names_of(lane.verdict.isolated_mask), run.names_of(voted.isolated_mask));
@@ -48,7 +50,9 @@ std::string trouble_of(const system::System& system, const evaluation::RunObserv
 std::string latest_error_text(const evaluation::RunObserver& run)
 {
     const auto& errors = run.voted().errors;
-    return errors.compared == 0 ? std::string{} : fmt::format("error against the truth: {:.1e} rad now, {:.1e} at most", errors.final_rad, errors.largest_rad);
+    return errors.compared == 0
+               ? std::string{}
+               : fmt::format("error against the truth: {:.1e} rad now, {:.1e} at most", errors.final_rad, errors.largest_rad);
 }
 
 }  // namespace
@@ -74,7 +78,8 @@ std::vector<std::string> process_lines(const Processes& processes)
     for (const auto& child : processes.all()) {
         const bool runs = child.process > 0;
         running += runs ? 1 : 0;
-        if (child.restarts > 0) lines.push_back(fmt::format("{}: started again {} time{}", child.name, child.restarts, child.restarts == 1 ? "" : "s"));
+        if (child.restarts > 0)
+            lines.push_back(fmt::format("{}: started again {} time{}", child.name, child.restarts, child.restarts == 1 ? "" : "s"));
         else if (!runs && !child.ended) lines.push_back(fmt::format("{}: does not run", child.name));
     }
     lines.insert(lines.begin(), fmt::format("{} of {} processes run", running, processes.all().size()));

@@ -11,8 +11,9 @@ namespace quorient::record {
 namespace {
 
 /// In the order of TypeId.
-constexpr std::array<std::string_view, bus::type_count> type_names{"ClusterDescription", "SensorFrame",  "TruthState",  "FaultVerdict",  "FaultDiagnosis", "AttitudeState",
-                                                                   "VoterOutput",        "VotedAttitude", "HealthEvent", "ServiceStatus", "FaultCommand"};
+constexpr std::array<std::string_view, bus::type_count> type_names{"ClusterDescription", "SensorFrame",   "TruthState",  "FaultVerdict",
+                                                                   "FaultDiagnosis",     "AttitudeState", "VoterOutput", "VotedAttitude",
+                                                                   "HealthEvent",        "ServiceStatus", "FaultCommand"};
 
 /// The struct's definition, from its first line to its last.
 std::string_view definition_of(std::string_view type)

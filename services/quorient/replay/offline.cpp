@@ -30,7 +30,8 @@ system::System offline(system::System system)
 
 }  // namespace
 
-Offline::Offline(system::System system, evaluation::RunObserver& observer, report::ReplayReport& report, const recording::LogOptions& log, report::RunTimeline* timeline)
+Offline::Offline(system::System system, evaluation::RunObserver& observer, report::ReplayReport& report, const recording::LogOptions& log,
+                 report::RunTimeline* timeline)
     : system_(offline(std::move(system))), log_(log), bus_(hub_.open()), loop_(*bus_, clock_, never_stop_)
 {
     observe(observer, report);

@@ -111,8 +111,10 @@ void weigh_errors(Balance& balance, const Compared& winner, const Compared& othe
     constexpr const char* when[] = {"the error", "the error after a failure", "the error after two"};
     for (unsigned k = 0; k < 3; ++k) {
         const double own = error_after(winner.figures, k), theirs = error_after(other.figures, k);
-        if (std::isfinite(own) && !std::isfinite(theirs)) balance.count(true, fmt::format("no measurement is left there after the worst {}", k == 1 ? "failure" : "two failures"));
-        if (std::isinf(own) && std::isfinite(theirs)) balance.count(false, fmt::format("a measurement is left there after any {}", k == 1 ? "failure" : "two failures"));
+        if (std::isfinite(own) && !std::isfinite(theirs))
+            balance.count(true, fmt::format("no measurement is left there after the worst {}", k == 1 ? "failure" : "two failures"));
+        if (std::isinf(own) && std::isfinite(theirs))
+            balance.count(false, fmt::format("a measurement is left there after any {}", k == 1 ? "failure" : "two failures"));
         if (!std::isfinite(own) || !std::isfinite(theirs) || std::abs(theirs / own - 1) < same) continue;
         if (theirs > own) balance.count(true, fmt::format("{} is {} larger there", when[k], percent(theirs / own)));
         else balance.count(false, fmt::format("{} is {} smaller there", when[k], percent(own / theirs)));
@@ -127,7 +129,9 @@ void weigh_isolation(Balance& balance, const Compared& winner, const Compared& o
     if (!winner.figures.survival || !other.figures.survival) return;
     const double lost = 1 - winner.figures.survival->probability, lost_there = 1 - other.figures.survival->probability;
     const double sure = 2 * std::hypot(winner.figures.survival->standard_error, other.figures.survival->standard_error);
-    if (std::abs(lost - lost_there) > sure) balance.count(lost_there > lost, fmt::format("{:.2g} % of the missions are lost there, {:.2g} % here", 100 * lost_there, 100 * lost));
+    if (std::abs(lost - lost_there) > sure)
+        balance.count(lost_there > lost,
+                      fmt::format("{:.2g} % of the missions are lost there, {:.2g} % here", 100 * lost_there, 100 * lost));
 }
 
 std::string against(const Compared& winner, const Compared& other)
@@ -137,7 +141,8 @@ std::string against(const Compared& winner, const Compared& other)
     Balance balance;
     if (winner.axes != other.axes) {
         const std::size_t more = winner.axes > other.axes ? winner.axes - other.axes : other.axes - winner.axes;
-        balance.count(winner.axes < other.axes, fmt::format("{} {} {}", more, more == 1 ? "axis" : "axes", winner.axes < other.axes ? "fewer" : "more"));
+        balance.count(winner.axes < other.axes,
+                      fmt::format("{} {} {}", more, more == 1 ? "axis" : "axes", winner.axes < other.axes ? "fewer" : "more"));
     }
     weigh_errors(balance, winner, other);
     weigh_isolation(balance, winner, other);
@@ -154,7 +159,11 @@ std::string after_failures(const Figures& figures)
     std::string text;
     for (unsigned place = 0; place < 3; ++place) {
         const bool named = design::named_in_turn(figures) > place, shows = figures.detectable > place;
-        text += fmt::format("  In the worst case parity {} the {} failure.\n", named ? "names" : shows ? "shows and does not name" : "does not show", which[place]);
+        text += fmt::format("  In the worst case parity {} the {} failure.\n",
+                            named   ? "names"
+                            : shows ? "shows and does not name"
+                                    : "does not show",
+                            which[place]);
     }
     return text;
 }
@@ -188,7 +197,8 @@ void append_bounds(std::string& text, const Figures& figures, const design::Boun
         const double missing = more ? bound / own - 1 : own / bound - 1;
         const std::string distance = !std::isfinite(missing) ? "nothing of a bound that may not be reachable"
                                                              : fmt::format("{} % from a bound that may not be reachable", significant(100 * missing));
-        fmt::format_to(std::back_inserter(text), "  {:<36}{:>12.6f}{:>12.6f}   {}\n", name, own, bound, missing < 1e-9 ? "met: no array does better" : distance);
+        fmt::format_to(std::back_inserter(text), "  {:<36}{:>12.6f}{:>12.6f}   {}\n", name, own, bound,
+                       missing < 1e-9 ? "met: no array does better" : distance);
     };
     row("trace with all axes", figures.trace, bounds.trace, false);
     for (std::size_t k = 0; k < std::min(figures.worst_after.size(), bounds.worst_after.size()); ++k)
@@ -206,7 +216,9 @@ void append_winner(std::string& text, const design::Design& winner)
     if (winner.symmetry > 1) text += fmt::format("  It looks the same after a turn of {:g} deg about z.\n", 360.0 / winner.symmetry);
     for (std::size_t axis = 0; axis < winner.cluster.size(); ++axis) {
         const auto i = static_cast<Eigen::Index>(axis);
-        const auto part = [&](Eigen::Index column) { return std::round(winner.cluster.axes(i, column) * 1e6) / 1e6 + 0.0; };  // + 0.0: no negative zero
+        const auto part = [&](Eigen::Index column) {
+            return std::round(winner.cluster.axes(i, column) * 1e6) / 1e6 + 0.0;
+        };  // + 0.0: no negative zero
         fmt::format_to(std::back_inserter(text), "  axis {:>2}  ({:>10.6f}, {:>10.6f}, {:>10.6f})\n", axis, part(0), part(1), part(2));
     }
 }
@@ -231,11 +243,13 @@ std::string explained(const design::Brief& brief, const design::SearchResult& re
         winner.axes, how_searched(result), result.designs.size(), result.designs.size() == 1 ? "is" : "are");
     if (!brief.noise.empty()) text += fmt::format("  Noise is as given; the common choices have the first instrument's, {:g}.\n", noise_of(brief));
     if (mission)
-        text += fmt::format("  \"survives\" is the share of missions that end well. At each failure the detection method itself has to name the axis, from frames of\n"
-                            "  noise and the fault.\n  The mission: {}.\n",
-                            mission_text(*brief.mission));
+        text += fmt::format(
+            "  \"survives\" is the share of missions that end well. At each failure the detection method itself has to name the axis, from frames of\n"
+            "  noise and the fault.\n  The mission: {}.\n",
+            mission_text(*brief.mission));
     append_winner(text, best);
-    text += fmt::format("\nTHE COMMON CHOICES\n  {:<32}{:>5}{:>9}{:>9}{:>9}{:>11}{}\n", "", "axes", "error", "after 1", "after 2", "names", mission ? "   survives" : "");
+    text += fmt::format("\nTHE COMMON CHOICES\n  {:<32}{:>5}{:>9}{:>9}{:>9}{:>11}{}\n", "", "axes", "error", "after 1", "after 2", "names",
+                        mission ? "   survives" : "");
     append_compared(text, winner, mission);
     for (const Compared& other : others) append_compared(text, other, mission);
     text += '\n';

@@ -68,7 +68,8 @@ void draw_directions(std::string& svg, const Panel& at, const View& view, const 
                      const std::array<const char*, 3>& names)
 {
     const Vector2d centre = at.centre();
-    fmt::format_to(std::back_inserter(svg), "<circle cx='{:.1f}' cy='{:.1f}' r='{}' fill='#fafafa' stroke='#ccc'/>\n", centre.x(), centre.y(), radius);
+    fmt::format_to(std::back_inserter(svg), "<circle cx='{:.1f}' cy='{:.1f}' r='{}' fill='#fafafa' stroke='#ccc'/>\n", centre.x(),
+                   centre.y(), radius);
     for (Index part = 0; part < 3; ++part) {
         const Vector2d tip = view.place(Vector3d::Unit(part), centre);
         if ((tip - centre).norm() < 1) continue;
@@ -109,10 +110,12 @@ void draw_likeness(std::string& svg, const Panel& at, const geometry::ParitySpac
             const double likeness = seen ? std::min(1.0, std::abs(p(i, j)) / std::sqrt(p(i, i) * p(j, j))) : 0;
             const auto grey = static_cast<int>(std::lround(255 - 175 * likeness));
             const double x = at.left + 70 + side * static_cast<double>(j), y = at.top + header + 10 + side * static_cast<double>(i);
-            fmt::format_to(std::back_inserter(svg), "<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' fill='rgb({},{},255)' stroke='white'/>\n", x, y, side, side,
-                           grey, grey);
+            fmt::format_to(std::back_inserter(svg),
+                           "<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' fill='rgb({},{},255)' stroke='white'/>\n", x, y,
+                           side, side, grey, grey);
             if (n <= 12)
-                label(svg, {x + side / 2, y + side / 2}, seen ? fmt::format("{:.2f}", likeness) : "-", fmt::format("font-size='{:.0f}'", std::clamp(side / 3, 7.0, 12.0)));
+                label(svg, {x + side / 2, y + side / 2}, seen ? fmt::format("{:.2f}", likeness) : "-",
+                      fmt::format("font-size='{:.0f}'", std::clamp(side / 3, 7.0, 12.0)));
         }
     for (Index i = 0; i < n; ++i) {
         const double step = side * (static_cast<double>(i) + 0.5);

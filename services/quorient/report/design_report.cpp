@@ -51,7 +51,9 @@ struct Row {
 void add_worst(std::vector<Row>& rows, std::size_t place, const Bounds& bounds)
 {
     const auto after = [place](double design::AfterFailures::*member) {
-        return [place, member](const Figures& figures) { return place < figures.worst_after.size() ? figures.worst_after[place].*member : undefined; };
+        return [place, member](const Figures& figures) {
+            return place < figures.worst_after.size() ? figures.worst_after[place].*member : undefined;
+        };
     };
     const bool bounded = place < bounds.worst_after.size();
     const std::string when = fmt::format("worst after {}", place + 1);
@@ -111,8 +113,8 @@ void append_axes(std::string& text, const geometry::SensorCluster& cluster)
     fmt::format_to(std::back_inserter(text), "{:>4} {:>10} {:>12}{:>12}{:>12}\n", "axis", "instrument", "x", "y", "z");
     for (std::size_t axis = 0; axis < cluster.size(); ++axis) {
         const auto i = static_cast<Eigen::Index>(axis);
-        fmt::format_to(std::back_inserter(text), "{:>4} {:>10} {:>12.8f}{:>12.8f}{:>12.8f}\n", axis, cluster.instrument[axis], shown(cluster.axes(i, 0)),
-                       shown(cluster.axes(i, 1)), shown(cluster.axes(i, 2)));
+        fmt::format_to(std::back_inserter(text), "{:>4} {:>10} {:>12.8f}{:>12.8f}{:>12.8f}\n", axis, cluster.instrument[axis],
+                       shown(cluster.axes(i, 0)), shown(cluster.axes(i, 1)), shown(cluster.axes(i, 2)));
     }
 }
 
@@ -126,7 +128,10 @@ std::string described(const Design& design)
 
 Json bound_json(const Bounds& bounds)
 {
-    Json json{{"trace", bounds.trace}, {"volume", bounds.volume}, {"condition", bounds.condition}, {"minimum_angle_deg", bounds.minimum_angle_rad / degree}};
+    Json json{{"trace", bounds.trace},
+              {"volume", bounds.volume},
+              {"condition", bounds.condition},
+              {"minimum_angle_deg", bounds.minimum_angle_rad / degree}};
     json["worst_after"] = Json::array();
     for (const auto& after : bounds.worst_after)
         json["worst_after"].push_back({{"failures", after.failures}, {"trace", after.trace}, {"volume", after.volume}});
@@ -170,8 +175,9 @@ std::string mission_text(const design::Mission& mission)
     std::string rates = fmt::format("{:g} failures per axis and hour", mission.axis_failures_per_h);
     if (mission.instrument_failures_per_h > 0) rates += fmt::format(", {:g} per instrument and hour", mission.instrument_failures_per_h);
     if (!mission.shared.empty()) rates += fmt::format(", {} shared {}", mission.shared.size(), mission.shared.size() == 1 ? "part" : "parts");
-    return fmt::format("{:g} h, {}; a failed axis is wrong by {:g} to {:g} sigma and has to be isolated within {} frames; {} missions with a failure are played",
-                       mission.hours, rates, mission.least_fault_sigma, mission.most_fault_sigma, mission.frames, mission.trials);
+    return fmt::format(
+        "{:g} h, {}; a failed axis is wrong by {:g} to {:g} sigma and has to be isolated within {} frames; {} missions with a failure are played",
+        mission.hours, rates, mission.least_fault_sigma, mission.most_fault_sigma, mission.frames, mission.trials);
 }
 
 std::string design_text(const design::Brief& brief, const design::SearchResult& result, design::Objective objective)
@@ -180,7 +186,8 @@ std::string design_text(const design::Brief& brief, const design::SearchResult& 
     const auto& designs = none ? result.nearest : result.designs;
     std::string text = fmt::format("{} axes, from {}; {}\n", brief.axis_count(), how_searched(result),
                                    none ? "NO ARRAY FOUND MEETS ALL DEMANDS; the one that comes nearest:"
-                                        : fmt::format("best {} first, none beaten in everything by another:", design::objectives()[static_cast<std::size_t>(objective)].name));
+                                        : fmt::format("best {} first, none beaten in everything by another:",
+                                                      design::objectives()[static_cast<std::size_t>(objective)].name));
     if (brief.mission) text += "survival: " + mission_text(*brief.mission) + '\n';
     if (designs.empty()) return text;
     std::vector<const Figures*> columns;
@@ -190,7 +197,8 @@ std::string design_text(const design::Brief& brief, const design::SearchResult& 
         columns.push_back(&designs[place].figures);
     }
     fmt::format_to(std::back_inserter(text), "\n{:<28}", noise_label(brief.noise.empty()));
-    for (std::size_t place = 0; place < designs.size(); ++place) fmt::format_to(std::back_inserter(text), "{:>14}", fmt::format("design {}", place + 1));
+    for (std::size_t place = 0; place < designs.size(); ++place)
+        fmt::format_to(std::back_inserter(text), "{:>14}", fmt::format("design {}", place + 1));
     fmt::format_to(std::back_inserter(text), "{:>14}\n", "bound");
     append_figures(text, columns, result.bounds);
     return text;
@@ -225,16 +233,17 @@ Json figures_json(const Figures& figures)
 std::string removals_text(const geometry::SensorCluster& cluster, const std::vector<design::Removal>& removals, bool instruments)
 {
     const bool known_noise = (cluster.sigma.array() > 0).any();
-    std::string text = fmt::format("Removing one of {} {}, the cheapest first; {}\n{:<14}{:>14}{:>14}{:>18}{:>12}{:>12}\n",
-                                   removals.size(), instruments ? "instruments" : "axes", known_noise ? "noise as calibrated" : "noise of each axis = 1",
-                                   instruments ? "instrument" : "axis", "trace", "condition",
-                                   "worst after 1", "F_d1", "F_d2");
+    std::string text = fmt::format("Removing one of {} {}, the cheapest first; {}\n{:<14}{:>14}{:>14}{:>18}{:>12}{:>12}\n", removals.size(),
+                                   instruments ? "instruments" : "axes", known_noise ? "noise as calibrated" : "noise of each axis = 1",
+                                   instruments ? "instrument" : "axis", "trace", "condition", "worst after 1", "F_d1", "F_d2");
     for (const design::Removal& removal : removals) {
         const Figures& figures = removal.figures;
         const std::size_t owner = instruments ? removal.unit : cluster.instrument[removal.unit];
         fmt::format_to(std::back_inserter(text), "{:<14}", fmt::format("{} ({})", removal.unit, cluster.instrument_name[owner]));
-        text += figure_cell(figures.trace) + figure_cell(figures.condition) + "    " + figure_cell(figures.worst_after.empty() ? undefined : figures.worst_after.front().trace);
-        for (const double figure : {figures.f_d1, figures.f_d2}) text += fmt::format("{:>12}", std::isfinite(figure) ? fmt::format("{:.6f}", figure) : "-");
+        text += figure_cell(figures.trace) + figure_cell(figures.condition) + "    " +
+                figure_cell(figures.worst_after.empty() ? undefined : figures.worst_after.front().trace);
+        for (const double figure : {figures.f_d1, figures.f_d2})
+            text += fmt::format("{:>12}", std::isfinite(figure) ? fmt::format("{:.6f}", figure) : "-");
         text += '\n';
     }
     return text;
@@ -258,7 +267,8 @@ std::string axes_file_text(const Design& design, const std::string& origin)
 {
     std::string text = fmt::format("# An array by {}\n# In a system file: unit: {{axes: THIS_FILE}}\naxes:\n", origin);
     for (Eigen::Index axis = 0; axis < design.cluster.axes.rows(); ++axis)
-        fmt::format_to(std::back_inserter(text), "  - [{:.17g}, {:.17g}, {:.17g}]\n", design.cluster.axes(axis, 0), design.cluster.axes(axis, 1), design.cluster.axes(axis, 2));
+        fmt::format_to(std::back_inserter(text), "  - [{:.17g}, {:.17g}, {:.17g}]\n", design.cluster.axes(axis, 0),
+                       design.cluster.axes(axis, 1), design.cluster.axes(axis, 2));
     return text + fmt::format("instrument: [{}]\n", fmt::join(design.cluster.instrument, ", "));
 }
 

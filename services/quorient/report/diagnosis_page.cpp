@@ -51,10 +51,12 @@ public:
 
     std::string text() const
     {
-        std::string page = "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><meta name='viewport' content='width=device-width, initial-scale=1'>\n";
+        std::string page =
+            "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><meta name='viewport' content='width=device-width, initial-scale=1'>\n";
         page += fmt::format("<title>{}</title>\n<style>{}{}</style></head><body>\n", markup_escaped(report_.log), style, figure_style);
         const std::string_view state = !report_.findings.empty() ? name_of(report_.findings.front().certainty) : report_.judged() ? "" : "open";
-        page += fmt::format("<h1 class='{}'>{}</h1>\n<p>{}: {:.1f} s</p>\n", state, markup_escaped(report_.sentence), markup_escaped(report_.log), report_.logged_s());
+        page += fmt::format("<h1 class='{}'>{}</h1>\n<p>{}: {:.1f} s</p>\n", state, markup_escaped(report_.sentence),
+                            markup_escaped(report_.log), report_.logged_s());
         page += findings();
         if (!report_.plot.bins.empty()) page += diagrams();
         page += fmt::format("<h2>All figures</h2>\n<pre>{}</pre>\n", markup_escaped(diagnosis_text(report_)));
@@ -78,11 +80,14 @@ private:
             text += fmt::format("<span><i style='background:{}'></i>{}</span>", colour(m), markup_escaped(report_.instruments[compared_[m]].name));
         text += "</p>\n";
         if (!report_.findings.empty()) text += figure_element(bar_strip("Findings", span_, bars()));
-        for (int axis = 0; axis < 3; ++axis) text += figure_element(band_strip(fmt::format("Rate about {}, all gyros", "xyz"[axis]), "deg/s", span_, rates(axis), rates_look));
+        for (int axis = 0; axis < 3; ++axis)
+            text +=
+                figure_element(band_strip(fmt::format("Rate about {}, all gyros", "xyz"[axis]), "deg/s", span_, rates(axis), rates_look));
         for (std::size_t m = 0; m < compared_.size() && was_watched(); ++m) {
             const std::string& name = report_.instruments[compared_[m]].name;
-            text += figure_element(
-                band_strip(fmt::format("{}: deviation from the others, and what it stays below while sound (dashed)", name), "deg/s", span_, residuals(m)));
+            text +=
+                figure_element(band_strip(fmt::format("{}: deviation from the others, and what it stays below while sound (dashed)", name),
+                                          "deg/s", span_, residuals(m)));
         }
         if (report_.attitude) {
             const std::string& name = report_.instruments[report_.attitude->left_out].name;
@@ -114,7 +119,8 @@ private:
             const bool certain = finding.certainty == Certainty::isolated;
             const bool detected = finding.certainty == Certainty::detected;
             const std::string_view colour = certain ? "#d00000" : detected ? "#e69f00" : "#999999";
-            found.push_back({fmt::format("{} {}", place_of(finding, report_), short_words(finding)), std::string(colour), finding.from_s, finding.to_s.value_or(span_.to_s)});
+            found.push_back({fmt::format("{} {}", place_of(finding, report_), short_words(finding)), std::string(colour), finding.from_s,
+                             finding.to_s.value_or(span_.to_s)});
         }
         return found;
     }
@@ -145,7 +151,9 @@ private:
 
     std::vector<Band> residuals(std::size_t m) const
     {
-        const auto residual = [&](const diagnosis::PlotBin& bin) { return std::pair<double, double>(bin.of[m].residual_deg_s, bin.of[m].residual_deg_s); };
+        const auto residual = [&](const diagnosis::PlotBin& bin) {
+            return std::pair<double, double>(bin.of[m].residual_deg_s, bin.of[m].residual_deg_s);
+        };
         const auto bound = [&](const diagnosis::PlotBin& bin) { return std::pair<double, double>(bin.of[m].bound_deg_s, bin.of[m].bound_deg_s); };
         return {band_of(colour(m), false, m, residual), band_of("#111111", true, m, bound)};
     }

@@ -75,7 +75,8 @@ std::string instrument_text(const InstrumentFacts& facts)
         if (is_known) known += (known.empty() ? "      " : ", ") + what;
     };
     const auto next_line = [&] { text += known.empty() ? "" : known + '\n', known.clear(); };
-    add(facts.bias_deg_s.has_value(), fmt::format("bias {} deg/s ({})", three(facts.bias_deg_s, 2), facts.bias_from_rest ? "at rest" : "against the others"));
+    add(facts.bias_deg_s.has_value(),
+        fmt::format("bias {} deg/s ({})", three(facts.bias_deg_s, 2), facts.bias_from_rest ? "at rest" : "against the others"));
     add(facts.gain.has_value(), fmt::format("gain {}", three(facts.gain, 3)));
     add(facts.rotation.has_value(), fmt::format("turned {}", turn_of(facts)));
     next_line();
@@ -88,7 +89,8 @@ std::string instrument_text(const InstrumentFacts& facts)
 std::string holes_of(const Report& report)
 {
     std::string text;
-    for (const diagnosis::Hole& hole : report.holes) text += fmt::format("{}{:.2f} to {:.2f} s", text.empty() ? " and nothing from " : ", ", hole.from_s, hole.to_s);
+    for (const diagnosis::Hole& hole : report.holes)
+        text += fmt::format("{}{:.2f} to {:.2f} s", text.empty() ? " and nothing from " : ", ", hole.from_s, hole.to_s);
     return text;
 }
 

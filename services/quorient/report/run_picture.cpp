@@ -125,8 +125,8 @@ private:
         for (std::size_t k = 0; k < accused.size(); ++k)
             bands.push_back(band("residual of " + run_.names_of(axis_bit(accused[k])), cli::colour(k + 1),
                                  [place, axis = accused[k]](const RunMoment& m) { return m.lane[place].residual[axis]; }));
-        return cli::band_strip(fmt::format("Lane {}: how far the axes contradict each other", system_.lanes[place].name), "of threshold", span_, bands,
-                               {cli::Spacing::logarithmic, lane_height});
+        return cli::band_strip(fmt::format("Lane {}: how far the axes contradict each other", system_.lanes[place].name), "of threshold",
+                               span_, bands, {cli::Spacing::logarithmic, lane_height});
     }
 
     /// Where state(moment) stays the same, one piece; nothing where it is absent. look(state): colour and text.
@@ -151,8 +151,10 @@ private:
 
     BarRow fault_row(std::size_t axis) const
     {
-        return row(run_.names_of(axis_bit(axis)) + ", truth", [axis](const RunMoment& m) { return has_axis(m.faulty, axis) ? std::optional(true) : std::nullopt; },
-                   [](bool) { return std::pair<std::string, std::string>(fault_ink, "faulty"); });
+        return row(
+            run_.names_of(axis_bit(axis)) + ", truth",
+            [axis](const RunMoment& m) { return has_axis(m.faulty, axis) ? std::optional(true) : std::nullopt; },
+            [](bool) { return std::pair<std::string, std::string>(fault_ink, "faulty"); });
     }
 
     BarRow exclusion_row(std::size_t place, std::size_t axis) const

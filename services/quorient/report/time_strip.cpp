@@ -43,8 +43,9 @@ std::string time_axis(const TimeSpan& span, double from, double base)
     const double step = round_step(std::max(1e-9, span.to_s - span.from_s), span.most_ticks);
     for (double tick = std::ceil(span.from_s / step) * step; tick <= span.to_s + 1e-9; tick += step) {
         const double x = percent_of(span, tick);
-        text += fmt::format("<line x1='{0:.2f}%' x2='{0:.2f}%' y1='{1}' y2='{2:.1f}' class='g'/><text x='{0:.2f}%' y='{3:.1f}' text-anchor='middle'>{4:g}</text>\n", x,
-                            from, base, base + 13, std::abs(tick) < step / 1000 ? 0.0 : tick);
+        text += fmt::format(
+            "<line x1='{0:.2f}%' x2='{0:.2f}%' y1='{1}' y2='{2:.1f}' class='g'/><text x='{0:.2f}%' y='{3:.1f}' text-anchor='middle'>{4:g}</text>\n",
+            x, from, base, base + 13, std::abs(tick) < step / 1000 ? 0.0 : tick);
     }
     return text + fmt::format("<text x='100%' y='{:.1f}' text-anchor='end'>time, s</text>\n", base + 25);
 }
@@ -61,8 +62,9 @@ Strip strip_legend(const std::vector<Band>& bands, const TimeSpan& span)
             made.height += legend_height;
             x = 0;
         }
-        made.body += fmt::format("<path d='M{0:.1f} {1}h14' stroke='{2}' stroke-width='3'{3}/><text x='{4:.1f}' y='{5}'>{6}</text>\n", x, made.height - 9, band.colour,
-                                 band.dashed ? " stroke-dasharray='4 3'" : "", x + 18, made.height - 5, markup_escaped(band.name));
+        made.body += fmt::format("<path d='M{0:.1f} {1}h14' stroke='{2}' stroke-width='3'{3}/><text x='{4:.1f}' y='{5}'>{6}</text>\n", x,
+                                 made.height - 9, band.colour, band.dashed ? " stroke-dasharray='4 3'" : "", x + 18, made.height - 5,
+                                 markup_escaped(band.name));
         x += needed + 12;
     }
     return made;
@@ -95,7 +97,8 @@ std::string piece(const Band& band, std::size_t from, std::size_t to, const Time
 {
     std::string path;
     const auto place = [&](std::size_t i, double value) {
-        path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', file_plot_width(span.left) * share_of(span, band.points[i].time_s), scale.place(value));
+        path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', file_plot_width(span.left) * share_of(span, band.points[i].time_s),
+                            scale.place(value));
     };
     for (std::size_t i = from; i < to; ++i) place(i, band.points[i].largest);
     const bool line = std::all_of(band.points.begin() + static_cast<std::ptrdiff_t>(from), band.points.begin() + static_cast<std::ptrdiff_t>(to),
@@ -121,8 +124,9 @@ std::string drawn(const Band& band, const TimeSpan& span, const Scale& scale)
 /// Curves have no places in percent: a drawing within the drawing, which is stretched sideways to the width of the page.
 std::string curves(const std::vector<Band>& bands, const TimeSpan& span, const Scale& scale, double from, double height)
 {
-    std::string text = fmt::format("<svg y='{0}' width='100%' height='{1}' viewBox='0 0 {2} {1}' preserveAspectRatio='none' overflow='visible'>\n", from, height,
-                                   file_plot_width(span.left));
+    std::string text =
+        fmt::format("<svg y='{0}' width='100%' height='{1}' viewBox='0 0 {2} {1}' preserveAspectRatio='none' overflow='visible'>\n", from,
+                    height, file_plot_width(span.left));
     for (const Band& band : bands) text += drawn(band, span, scale);
     return text + "</svg>\n";
 }
@@ -131,8 +135,8 @@ std::string bar(const TimeSpan& span, double y, double from_s, double to_s, cons
 {
     const double least_percent = 0.4;  // so that the shortest one is seen
     const double from = std::min(percent_of(span, from_s), 100 - least_percent);
-    return fmt::format("<rect x='{:.2f}%' y='{:.1f}' width='{:.2f}%' height='{}' fill='{}'/>\n", from, y + 2, std::max(least_percent, percent_of(span, to_s) - from),
-                       bar_height - 4, colour);
+    return fmt::format("<rect x='{:.2f}%' y='{:.1f}' width='{:.2f}%' height='{}' fill='{}'/>\n", from, y + 2,
+                       std::max(least_percent, percent_of(span, to_s) - from), bar_height - 4, colour);
 }
 
 }  // namespace
@@ -175,7 +179,8 @@ Strip row_strip(const std::string& title, const TimeSpan& span, const std::vecto
             text += bar(span, y, one.from_s, one.to_s, one.colour);
             const double room = file_plot_width(span.left) * (share_of(span, one.to_s) - share_of(span, one.from_s));
             if (room > letter_width * static_cast<double>(one.text.size() + 2))
-                text += fmt::format("<text x='{:.2f}%' dx='4' y='{:.1f}' class='o'>{}</text>\n", percent_of(span, one.from_s), y + bar_height - 4, markup_escaped(one.text));
+                text += fmt::format("<text x='{:.2f}%' dx='4' y='{:.1f}' class='o'>{}</text>\n", percent_of(span, one.from_s),
+                                    y + bar_height - 4, markup_escaped(one.text));
         }
         y += bar_height;
     }
@@ -199,13 +204,14 @@ std::string svg_file(const std::string& title, const std::vector<Strip>& strips)
         body += fmt::format("<text x='{}' y='{:.1f}' class='t'>{}</text><text x='{}' y='{:.1f}' text-anchor='end'>{}</text>\n", strip.left, y + 13,
                             markup_escaped(strip.title), strip.left - 6, y + 13, markup_escaped(strip.unit));
         y += title_height;
-        body += fmt::format("<svg x='{}' y='{:.1f}' width='{}' height='{}' overflow='visible'>\n{}</svg>\n", strip.left, y, file_plot_width(strip.left), strip.height,
-                            strip.body);
+        body += fmt::format("<svg x='{}' y='{:.1f}' width='{}' height='{}' overflow='visible'>\n{}</svg>\n", strip.left, y,
+                            file_plot_width(strip.left), strip.height, strip.body);
         y += strip.height;
     }
-    return fmt::format("<svg xmlns='http://www.w3.org/2000/svg' width='840' viewBox='0 0 {0} {1:.1f}' role='img'>\n<title>{2}</title><style>{3}</style>\n"
-                       "<rect width='{0}' height='{1:.1f}' fill='#fff'/>\n<text x='8' y='18' class='h'>{2}</text>\n{4}</svg>\n",
-                       file_width, y, markup_escaped(title), file_style, body);
+    return fmt::format(
+        "<svg xmlns='http://www.w3.org/2000/svg' width='840' viewBox='0 0 {0} {1:.1f}' role='img'>\n<title>{2}</title><style>{3}</style>\n"
+        "<rect width='{0}' height='{1:.1f}' fill='#fff'/>\n<text x='8' y='18' class='h'>{2}</text>\n{4}</svg>\n",
+        file_width, y, markup_escaped(title), file_style, body);
 }
 
 }  // namespace quorient::cli

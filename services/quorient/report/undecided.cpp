@@ -32,8 +32,9 @@ std::string undecided_text(const evaluation::RunObserver& run)
             }
             text += fmt::format("lane {:<4}{} for {:.3f} s", lane.name, to_string(state), total_s);
             if (longest != nullptr)
-                text += fmt::format(" in {} spell{}, {}from {:.3f} s to {:.3f} s{}", count, count == 1 ? "" : "s", count == 1 ? "" : "the longest ", longest->from_s,
-                                    longest->to_s, longest->axes == 0 ? std::string{} : fmt::format(" ({})", run.names_of(longest->axes)));
+                text += fmt::format(" in {} spell{}, {}from {:.3f} s to {:.3f} s{}", count, count == 1 ? "" : "s",
+                                    count == 1 ? "" : "the longest ", longest->from_s, longest->to_s,
+                                    longest->axes == 0 ? std::string{} : fmt::format(" ({})", run.names_of(longest->axes)));
             text += '\n';
         }
     return text;
@@ -54,8 +55,12 @@ nlohmann::ordered_json undecided_json(const evaluation::RunObserver& run)
     auto list = nlohmann::ordered_json::array();
     for (const auto& lane : run.lanes())
         for (const Spell& spell : lane.undecided.spells())
-            list.push_back({{"lane", lane.name}, {"state", to_string(spell.state)}, {"axes", cli::axes_json(spell.axes)}, {"names", run.names_of(spell.axes)},
-                            {"from_s", spell.from_s}, {"to_s", spell.to_s}});
+            list.push_back({{"lane", lane.name},
+                            {"state", to_string(spell.state)},
+                            {"axes", cli::axes_json(spell.axes)},
+                            {"names", run.names_of(spell.axes)},
+                            {"from_s", spell.from_s},
+                            {"to_s", spell.to_s}});
     return list;
 }
 

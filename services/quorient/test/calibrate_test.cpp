@@ -231,7 +231,8 @@ TEST(SampleStore, gives_back_the_same_samples_from_memory_and_from_its_file)
         sample.time_s = 0.001 * static_cast<double>(i);
         sample.interval_s = 0.001 + 1e-9 * static_cast<double>(i % 7);
         sample.rate.resize(axes);
-        for (Eigen::Index axis = 0; axis < sample.rate.size(); ++axis) sample.rate(axis) = std::sin(0.1 * static_cast<double>(i) + static_cast<double>(axis));
+        for (Eigen::Index axis = 0; axis < sample.rate.size(); ++axis)
+            sample.rate(axis) = std::sin(0.1 * static_cast<double>(i) + static_cast<double>(axis));
         sample.complete = i % 3 != 0;
         sample.follows = i % 5 != 0;
         return sample;

@@ -57,7 +57,8 @@ TEST(DesignVerb, has_the_fields_of_the_contract_in_order)
     const auto object = nlohmann::ordered_json::parse(run("design --axes 6 --json").out);
     EXPECT_THAT(keys_of(object), testing::ElementsAre("designs", "bound"));
     const auto& design = object["designs"][0];
-    EXPECT_THAT(keys_of(design), testing::ElementsAre("axes", "trace", "volume", "condition", "minimum_angle_deg", "worst_after", "F_d1", "F_d2", "survival"));
+    EXPECT_THAT(keys_of(design), testing::ElementsAre("axes", "trace", "volume", "condition", "minimum_angle_deg", "worst_after", "F_d1",
+                                                      "F_d2", "survival"));
     EXPECT_THAT(keys_of(design["worst_after"][0]), testing::ElementsAre("failures", "trace", "volume", "condition"));
     EXPECT_EQ(design["axes"].size(), 6U);
     EXPECT_NEAR(design["trace"], 1.5, 1e-12);
@@ -136,10 +137,12 @@ TEST_F(Design, never_names_an_array_that_measures_nothing_outside_a_plane)
 
 TEST_F(Design, reports_every_mistake_of_a_brief_with_its_place)
 {
-    const Answer result = run("design " + written("brief.yaml", "axes: 6\nmonting: free\nmounting: {kind: faces, faces: [{tolerance_deg: -1}]}\nfault: board\n"));
+    const Answer result = run(
+        "design " + written("brief.yaml", "axes: 6\nmonting: free\nmounting: {kind: faces, faces: [{tolerance_deg: -1}]}\nfault: board\n"));
     EXPECT_EQ(result.exit_code, 2);
-    EXPECT_THAT(result.error, AllOf(HasSubstr("brief.yaml:2:1: unknown key 'monting'; did you mean 'mounting'?"), HasSubstr("brief.yaml:3:33: mounting.faces[0].normal is missing"),
-                                    HasSubstr("tolerance_deg"), HasSubstr("brief.yaml:4:8: fault: expected axis or instrument")));
+    EXPECT_THAT(result.error, AllOf(HasSubstr("brief.yaml:2:1: unknown key 'monting'; did you mean 'mounting'?"),
+                                    HasSubstr("brief.yaml:3:33: mounting.faces[0].normal is missing"), HasSubstr("tolerance_deg"),
+                                    HasSubstr("brief.yaml:4:8: fault: expected axis or instrument")));
 }
 
 TEST_F(Design, points_at_the_demand_of_a_brief_that_no_array_can_meet)
@@ -159,7 +162,10 @@ TEST_F(Design, takes_every_kind_of_mounting_from_a_file)
     EXPECT_NEAR(trace("kind: symmetric\norder: 5\n"), 1.5, 1e-9);
     EXPECT_NEAR(trace("kind: mirror\nnormal: [1, 0, 0]\n"), 1.5, 1e-9);
     EXPECT_NEAR(trace("kind: cone\nhalf_angle_deg: 54.73561031724535\n"), 1.5, 1e-9);
-    EXPECT_NEAR(trace("kind: faces\nfaces:\n  - {normal: [1, 0, 0], holds: 2}\n  - {normal: [0, 1, 0], holds: 2}\n  - {normal: [0, 0, 2], holds: 2}\n"), 1.5, 1e-9);
+    EXPECT_NEAR(
+        trace(
+            "kind: faces\nfaces:\n  - {normal: [1, 0, 0], holds: 2}\n  - {normal: [0, 1, 0], holds: 2}\n  - {normal: [0, 0, 2], holds: 2}\n"),
+        1.5, 1e-9);
     EXPECT_NEAR(trace("kind: wedges\nangles_deg: [0, 90]\nazimuths_deg: [0, 90]\n"), 1.5, 1e-9);
     EXPECT_NEAR(trace("kind: wedges\nangles_deg: [0, 45]\nazimuths_deg: [0, 90, 180, 270]\nturns_deg: [0, 45]\n", "--triads 2"), 1.5, 1e-9);
 }
@@ -201,7 +207,8 @@ TEST(DesignVerb, adds_axes_to_an_array_and_keeps_those_it_has)
 TEST(DesignVerb, explains_in_words_what_the_winner_gains_and_what_two_failures_leave)
 {
     const Answer result = run("design --axes 6 --explain");
-    EXPECT_THAT(result.out, AllOf(HasSubstr("It is the layout `dodecahedron`"), HasSubstr("Against three at right angles plus one:\n    costs  2 axes more"),
+    EXPECT_THAT(result.out, AllOf(HasSubstr("It is the layout `dodecahedron`"),
+                                  HasSubstr("Against three at right angles plus one:\n    costs  2 axes more"),
                                   HasSubstr("WHAT TWO FAILURES LEAVE"), HasSubstr("met: no array does better")));
     EXPECT_EQ(run("design --axes 4 --explain").exit_code, 0);
     EXPECT_EQ(run("design --axes 3 --explain").exit_code, 0);

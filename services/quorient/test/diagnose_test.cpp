@@ -68,7 +68,8 @@ std::string table(std::size_t gyros, const std::function<void(double time_s, std
         text += fmt::format("{:.2f}", t);
         for (std::size_t m = 0; m < gyros; ++m) {
             Triad rate;
-            for (std::size_t i = 0; i < 3; ++i) rate[i] = truth[i] * (1 + 0.002 * static_cast<double>(m)) + 0.3 * static_cast<double>(i) + 0.08 * normal(random);
+            for (std::size_t i = 0; i < 3; ++i)
+                rate[i] = truth[i] * (1 + 0.002 * static_cast<double>(m)) + 0.3 * static_cast<double>(i) + 0.08 * normal(random);
             if (spoil) spoil(t, m, rate);
             text += fmt::format(",{:.4f},{:.4f},{:.4f}", rate[0], rate[1], rate[2]);
         }
@@ -113,8 +114,8 @@ TEST_F(DiagnoseVerb, keeps_the_contract_of_its_json)
     for (const char* const key : {"log", "sentence", "duration_s", "coverage", "instruments", "findings", "peers", "attitude_difference_deg"})
         EXPECT_TRUE(report.contains(key)) << key;
     ASSERT_EQ(report["instruments"].size(), 3U);
-    for (const char* const key : {"name", "rate_hz", "jitter_s", "gaps", "duplicates", "steps_back", "clipped", "clock_offset_s", "bias_deg_s", "gain",
-                                  "rotation", "noise_rest_deg_s", "noise_motion_deg_s"})
+    for (const char* const key : {"name", "rate_hz", "jitter_s", "gaps", "duplicates", "steps_back", "clipped", "clock_offset_s",
+                                  "bias_deg_s", "gain", "rotation", "noise_rest_deg_s", "noise_motion_deg_s"})
         EXPECT_TRUE(report["instruments"][0].contains(key)) << key;
     ASSERT_FALSE(report["findings"].empty());
     for (const char* const key : {"instrument", "axis", "kind", "size", "uncertainty", "unit", "from_s", "to_s", "certainty", "candidates"})
@@ -215,8 +216,9 @@ class FieldRecording : public testing::Test {};
 class HealthyRecording : public testing::TestWithParam<const char*> {};
 
 INSTANTIATE_TEST_SUITE_P(Field, HealthyRecording,
-                         testing::Values("cats_drone_healthy.csv", "cats_drop_counts_long.csv --lsb-per-deg-s 16.4", "cats_rocket_healthy_long.csv --unit deg/s",
-                                         "ardupilot_3_imus_crash.bin", "ardupilot_2_imus_hole.bin", "ardupilot_46_instances.bin", "px4_3_imus.ulg"),
+                         testing::Values("cats_drone_healthy.csv", "cats_drop_counts_long.csv --lsb-per-deg-s 16.4",
+                                         "cats_rocket_healthy_long.csv --unit deg/s", "ardupilot_3_imus_crash.bin",
+                                         "ardupilot_2_imus_hole.bin", "ardupilot_46_instances.bin", "px4_3_imus.ulg"),
                          [](const auto& its) {
                              std::string name = its.param;
                              name.resize(name.find('.'));

@@ -71,7 +71,8 @@ TEST(LayoutVerb, leaves_axes_out)
 TEST(LayoutVerb, keeps_the_numbers_of_the_axes_that_are_left)
 {
     const std::string text = run("cone-6 --without 1,3").out;
-    for (const char* row : {"\n   0          0 ", "\n   2          2 ", "\n   4          4 ", "\n   5          5 "}) EXPECT_THAT(text, HasSubstr(row));
+    for (const char* row : {"\n   0          0 ", "\n   2          2 ", "\n   4          4 ", "\n   5          5 "})
+        EXPECT_THAT(text, HasSubstr(row));
     EXPECT_THAT(text, testing::Not(HasSubstr("\n   1 ")));
     EXPECT_THAT(text, testing::Not(HasSubstr("\n   3 ")));
 }

@@ -106,7 +106,8 @@ TEST_F(CommandLine, suggests_the_option_that_was_meant_before_it_complains_of_an
 TEST_F(CommandLine, takes_every_option_that_it_has)
 {
     for (const auto& option : program.number_options())
-        EXPECT_THAT(run_program(program, option.verb + " " + option.option + " x").error, Not(HasSubstr("unknown option"))) << option.verb << option.option;
+        EXPECT_THAT(run_program(program, option.verb + " " + option.option + " x").error, Not(HasSubstr("unknown option")))
+            << option.verb << option.option;
     for (const auto& verb : program.verbs()) EXPECT_EQ(run_program(program, verb + " --help").exit_code, ExitCode::done) << verb;
 }
 

@@ -154,7 +154,8 @@ TEST_F(Recording, drops_and_counts_what_a_file_that_stands_still_leaves_no_room_
     EXPECT_GT(result.dropped, 0U);
     EXPECT_GT(result.frames, 0U);
     EXPECT_EQ(result.frames + result.dropped, count);
-    std::ofstream(path("piped.mcap"), std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    std::ofstream(path("piped.mcap"), std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     EXPECT_EQ(sequences_in(path("piped.mcap")).size(), result.frames);
 }
 

@@ -41,8 +41,9 @@ Standing healthy()
 
 TEST(Standing, of_a_healthy_unit_is_good)
 {
-    EXPECT_EQ(standing_text(healthy(), now_ns),
-              "GOOD: attitude FULL since 25 s, from spare, primary lane a, 2 lanes vouch; no axis is out; 4 axes left, 1 further fault can be detected");
+    EXPECT_EQ(
+        standing_text(healthy(), now_ns),
+        "GOOD: attitude FULL since 25 s, from spare, primary lane a, 2 lanes vouch; no axis is out; 4 axes left, 1 further fault can be detected");
 }
 
 TEST(Standing, names_what_is_out_and_since_when_as_the_description_does)
@@ -52,8 +53,9 @@ TEST(Standing, names_what_is_out_and_since_when_as_the_description_does)
     standing.verdicts[1].isolated_mask = 0b10;
     standing.verdicts[1].excluded_from[1] = 2320;
     standing.verdicts[1].detectable_remaining = 0;
-    EXPECT_EQ(standing_text(standing, now_ns),
-              "GOOD: attitude FULL since 25 s, from spare, primary lane a, 2 lanes vouch; out: G2 since 8.4 s; 3 axes left, no further fault can be detected");
+    EXPECT_EQ(
+        standing_text(standing, now_ns),
+        "GOOD: attitude FULL since 25 s, from spare, primary lane a, 2 lanes vouch; out: G2 since 8.4 s; 3 axes left, no further fault can be detected");
     const auto json = standing_json(standing, now_ns);
     EXPECT_EQ(json["good"], true);
     EXPECT_EQ(json["out"][0]["name"], "G2");

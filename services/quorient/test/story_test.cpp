@@ -11,7 +11,8 @@ namespace {
 
 using testing::ElementsAre;
 
-HealthEvent event(std::int64_t time_ms, EventCode code, std::string_view source, std::string_view text, AxisMask axes = 0, Severity severity = Severity::warning_high)
+HealthEvent event(std::int64_t time_ms, EventCode code, std::string_view source, std::string_view text, AxisMask axes = 0,
+                  Severity severity = Severity::warning_high)
 {
     HealthEvent made;
     made.wall_time_ns = time_ms * 1'000'000;
@@ -46,7 +47,10 @@ TEST(Story, is_in_order_of_time_whatever_the_order_of_arrival)
 TEST(Story, of_what_comes_and_goes_shows_the_newest_and_how_often)
 {
     Story story(10);
-    for (int i = 0; i < 50; ++i) story.add(event(1000 + 100 * i, EventCode::level_changed, "voter-1", i % 2 ? "SINGLE -> FULL" : "FULL -> SINGLE", 0, Severity::info), "1 s");
+    for (int i = 0; i < 50; ++i)
+        story.add(
+            event(1000 + 100 * i, EventCode::level_changed, "voter-1", i % 2 ? "SINGLE -> FULL" : "FULL -> SINGLE", 0, Severity::info),
+            "1 s");
     EXPECT_THAT(story.lines(), ElementsAre("        1 s  voter-1                SINGLE -> FULL (x50)"));
     story.add(event(60'000, EventCode::level_changed, "voter-1", "FULL -> LOST"), "60 s");
     EXPECT_EQ(story.lines().size(), 2U) << "a new trouble is a new line";

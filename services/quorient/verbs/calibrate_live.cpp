@@ -117,7 +117,8 @@ LiveSamples receive_samples(const system::System& system, double duration_s)
     Progress progress;
     loop.every(shown_every_ns, [&] {
         progress.title(fmt::format("{} frames: let them rest, then turn them about all axes", receiver.frames()));
-        progress.show(static_cast<std::size_t>((clock.steady_ns() - begin_ns) / shown_every_ns), static_cast<std::size_t>(duration_s * 1e9) / shown_every_ns);
+        progress.show(static_cast<std::size_t>((clock.steady_ns() - begin_ns) / shown_every_ns),
+                      static_cast<std::size_t>(duration_s * 1e9) / shown_every_ns);
     });
     loop.run();
     std::signal(SIGINT, SIG_DFL);  // the fits can be ended

@@ -182,8 +182,9 @@ std::string axes_text(const Calibration& calibration)
         const double limit = calibration.saturation_limit_rad_s[axis];
         text += fmt::format("{:>4} {:<10} {:>11.3f} {:>7} {:>13.3f} {:>9.2f} {:>16.2f} {:>17} {:>18} {:>12} {:>10}\n", axis,
                             axis_name(calibration, axis), calibration.at_rest.bias_rad_s(row) / degree,
-                            calibration.rest.size() > 1 ? fmt::format("{:.3f}", calibration.at_rest.bias_spread_rad_s(row) / degree) : "-", calibration.at_rest.deviation_rad_s(row) / degree,
-                            100 * (calibration.cluster.gain[axis] - 1), calibration.misalignment_rad[axis] / degree,
+                            calibration.rest.size() > 1 ? fmt::format("{:.3f}", calibration.at_rest.bias_spread_rad_s(row) / degree) : "-",
+                            calibration.at_rest.deviation_rad_s(row) / degree, 100 * (calibration.cluster.gain[axis] - 1),
+                            calibration.misalignment_rad[axis] / degree,
                             rested ? fmt::format("{:.2f}", calibration.allan_figures.random_walk_rad_sqrt_s(row) / degree * 60) : "-",
                             rested ? fmt::format("{:.1f}", calibration.allan_figures.bias_instability_rad_s(row) / degree * 3600) : "-",
                             limit > 0 ? fmt::format("{:.2f}", limit / degree) : "-", calibration.saturated[axis]);
@@ -199,7 +200,8 @@ std::string motion_text(const Calibration& calibration, bool is_silent)
     text += fmt::format("\naxes fitted: they disagree by {:.2f} deg/s rms in motion\n", calibration.axes_residual_rad_s / degree);
     if (calibration.cluster.motion_level > 0)
         text += fmt::format("motion noise: {:.2f} times the usual of an array ({})\n", calibration.cluster.motion_level,
-                            is_silent ? "so much keeps the accumulating detector silent here" : "the largest that was tried: accumulating isolates an instrument still");
+                            is_silent ? "so much keeps the accumulating detector silent here"
+                                      : "the largest that was tried: accumulating isolates an instrument still");
     if (const auto& gated = calibration.cluster.gated)
         text +=
             fmt::format("gated sums: {:.3f} ms along, {:.3f} ms across, axes {:.1e}, rate {:.1e} (all but the worst frames show so much)\n",

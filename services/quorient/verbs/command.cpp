@@ -86,7 +86,8 @@ simulation::FaultSpec fault_with_axes(const CommandOptions& options)
     const auto begin = text.find('=', place) + 1;
     const auto end = std::min(text.find(',', begin), text.size());
     const auto words = axis_words(text.substr(begin, end - begin));
-    if (std::ranges::all_of(words, [](const std::string& word) { return word.empty() || is_axis_number(word) || word.starts_with('-'); })) return parsed(text, text);
+    if (std::ranges::all_of(words, [](const std::string& word) { return word.empty() || is_axis_number(word) || word.starts_with('-'); }))
+        return parsed(text, text);
     auto fault = parsed(std::string(text).replace(begin, end - begin, "0"), text);
     fault.axes = chosen_axes(options.bus, words);
     return fault;
@@ -128,7 +129,8 @@ void add_inject(Program& program)
     options->bus.add_to(verb, "operator");
     const auto fault = verb.option("fault", options->fault, "axis=1,kind=scale,value=0.8,start=0,end=10; an axis's name will do, as in axis=G2");
     verb.flag("--clear", options->clear, "Take all faults back instead").in_place_of({fault});
-    verb.footer("Examples:\n  quorient inject axis=1,kind=bias,value=0.1,start=0\n  quorient inject 'axis=IMU3 y,kind=scale,value=0.8'\n  quorient inject instrument=IMU3,kind=zero");
+    verb.footer(
+        "Examples:\n  quorient inject axis=1,kind=bias,value=0.1,start=0\n  quorient inject 'axis=IMU3 y,kind=scale,value=0.8'\n  quorient inject instrument=IMU3,kind=zero");
     verb.not_as_asked_if("a service refused the order, or did not answer");
     verb.run([options] { finish(send(*options, inject_command(*options))); });
 }

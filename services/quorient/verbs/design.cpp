@@ -181,7 +181,8 @@ void print_removals(const DesignOptions& options, const BriefFile& input)
     const auto cluster = kept_cluster(options, input.keep);
     const bool instruments = input.brief.instrument_faults;
     const std::size_t units = instruments ? cluster.instrument_name.size() : cluster.size();
-    if (cluster.size() <= 3 || units < 2) fail(fmt::format("--remove: {} has {} axes, and 3 are needed to measure a rotation", input.keep, cluster.size()));
+    if (cluster.size() <= 3 || units < 2)
+        fail(fmt::format("--remove: {} has {} axes, and 3 are needed to measure a rotation", input.keep, cluster.size()));
     const auto list = design::removals(cluster, instruments, 1, objective_of(options.objective));
     if (options.json) fmt::print("{}\n", dump(removals_json(list, instruments)));
     else fmt::print("{}", removals_text(cluster, list, instruments));
@@ -262,7 +263,8 @@ design::ForEach on_all_cores(const DesignOptions& options, Progress& progress)
 design::SearchResult run_search(const DesignOptions& options, const BriefFile& input, const design::ForEach& for_each)
 {
     const design::SearchSettings settings{objective_of(options.objective), options.seed,
-                                          options.starts.value_or(static_cast<unsigned>(design::starts_for(input.brief.axis_count()))), options.designs};
+                                          options.starts.value_or(static_cast<unsigned>(design::starts_for(input.brief.axis_count()))),
+                                          options.designs};
     auto result = design::search(input.brief, settings, for_each);
     if (!result) refuse(input, result.error());
     return std::move(*result);
@@ -282,21 +284,24 @@ void report_unmet(const design::Brief& brief, const design::SearchResult& result
     if (result.designs.empty()) {
         const bool flat = !result.nearest.empty() && !std::isfinite(result.nearest.front().figures.trace);
         if (flat) fmt::print(stderr, "no array found measures all rotations: in every one that was tried the axes lie in one plane\n");
-        else if (result.searched == design::Searched::wholly) fmt::print(stderr, "none of all {} choices of places meets all demands\n", result.tried);
+        else if (result.searched == design::Searched::wholly)
+            fmt::print(stderr, "none of all {} choices of places meets all demands\n", result.tried);
         else fmt::print(stderr, "no array found meets all demands; no bound is known that forbids it\n");
         throw Exit{ExitCode::not_as_asked};
     }
     const design::Figures& best = result.designs.front().figures;
     if (design::names_failures(best, brief)) return;
-    fmt::print(stderr, "note: no array found lets parity name {} failures one after another, whatever their sizes; the first design names {}\n", *brief.failures,
-               design::named_in_turn(best));
+    fmt::print(stderr,
+               "note: no array found lets parity name {} failures one after another, whatever their sizes; the first design names {}\n",
+               *brief.failures, design::named_in_turn(best));
 }
 
 void run(const DesignOptions& options)
 {
     BriefFile input = read_brief(options);
     if (options.remove) return print_removals(options, input);
-    if (input.brief.instruments == 0) fail("nothing to design: give --axes N, --pairs N or --triads N, or a brief; with --keep, --remove asks which axis may go");
+    if (input.brief.instruments == 0)
+        fail("nothing to design: give --axes N, --pairs N or --triads N, or a brief; with --keep, --remove asks which axis may go");
     keep(options, input);
     if (!options.out.empty()) look_at_outputs(options);
     auto progress = std::make_unique<Progress>();

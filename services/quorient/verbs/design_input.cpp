@@ -104,7 +104,9 @@ design::Mounting parse_mounting(Section section)
     else if (kind == "wedges") mounting = parse_wedges(section);
     else if (kind == "symmetric") mounting = parse_symmetry(section);
     else if (kind == "mirror") mounting = design::SymmetricMounting{direction(section, "normal"), 2};
-    else if (kind != "free") section.problem("kind", fmt::format("unknown mounting '{}'; known are free, cone, right-angles, faces, wedges, symmetric and mirror", kind));
+    else if (kind != "free")
+        section.problem(
+            "kind", fmt::format("unknown mounting '{}'; known are free, cone, right-angles, faces, wedges, symmetric and mirror", kind));
     section.finish();
     return mounting;
 }

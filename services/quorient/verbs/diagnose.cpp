@@ -81,7 +81,9 @@ void add_diagnose(Program& program)
                    "one log or several of the same motion: ArduPilot .bin or .log, PX4 .ulg, ROS 2 bag, CSV; compressed or not").required();
     verb.option("--reference", options->reference, "a healthy log of the same vehicle: its biases, gains and mountings are taken out first")
         .value_name("HEALTHY_LOG");
-    verb.option("--class", options->sensor_class, "how much sound gyros may differ").one_of({"consumer", "industrial", "tactical", "fibre-optic"}).shows_default();
+    verb.option("--class", options->sensor_class, "how much sound gyros may differ")
+        .one_of({"consumer", "industrial", "tactical", "fibre-optic"})
+        .shows_default();
     verb.option("--mount", options->mount, "all on one board, or separate boxes on a structure that flexes; by default several logs are boxes")
         .one_of({"board", "structure"});
     options->log.add_to(verb);

@@ -63,8 +63,8 @@ struct Came {
     std::string explained(const EchoOptions& options) const
     {
         const auto others = other_units.empty() ? std::string{} : fmt::format("; there are samples of unit {}", fmt::join(other_units, ", "));
-        return fmt::format("no sample of {} of unit {} came in domain {} on '{}'{}", full_name(options.topic), options.bus.unit, options.bus.joined_domain(),
-                           options.bus.interface, others);
+        return fmt::format("no sample of {} of unit {} came in domain {} on '{}'{}", full_name(options.topic), options.bus.unit,
+                           options.bus.joined_domain(), options.bus.interface, others);
     }
 };
 
@@ -99,7 +99,8 @@ int echo(const EchoOptions& options)
         }).set(clock.steady_ns() + patience_ns);
     const int exit_code = loop.run();
     if (exit_code == ExitCode::not_as_asked)
-        fmt::print(stderr, "{}\n", came.shown == 0 ? came.explained(options) : fmt::format("{} samples came in {:g} s", came.shown, options.timeout_s));
+        fmt::print(stderr, "{}\n",
+                   came.shown == 0 ? came.explained(options) : fmt::format("{} samples came in {:g} s", came.shown, options.timeout_s));
     return exit_code;
 }
 
@@ -112,7 +113,9 @@ void add_echo(Program& program)
     options->bus.add_to(verb);
     verb.option("topic", options->topic, "quorient/voter_output, or voter_output").required();
     verb.option("--count", options->count, "End after so many samples; 0 = go on");
-    verb.option("--timeout", options->timeout_s, "End with exit code 1 after so many seconds; 0 = go on").within(settings::not_negative).value_name("S");
+    verb.option("--timeout", options->timeout_s, "End with exit code 1 after so many seconds; 0 = go on")
+        .within(settings::not_negative)
+        .value_name("S");
     verb.option("--lease", options->bus.voted_lease_s, "Of `voted`, if above max(50 ms, 3 intervals) in the system file")
         .within(settings::above_zero)
         .value_name("S")

@@ -56,7 +56,9 @@ runtime::Pulse only_one(const HealthOptions& options)
         return pulse.service != options.name || (options.domain && pulse.owner.domain != *options.domain) ||
                (options.unit && pulse.owner.unit != *options.unit);
     });
-    if (asked_for.size() > 1) fail(fmt::format("{}: several processes have this name: {}. Choose one by --domain and --unit", options.name, described(asked_for)));
+    if (asked_for.size() > 1)
+        fail(
+            fmt::format("{}: several processes have this name: {}. Choose one by --domain and --unit", options.name, described(asked_for)));
     if (asked_for.size() == 1) return asked_for.front();
     const auto asked = fmt::format("{}{}{}", options.name, options.domain ? fmt::format(" in domain {}", *options.domain) : "",
                                    options.unit ? fmt::format(" of unit {}", *options.unit) : "");
@@ -84,7 +86,8 @@ void add_health(Program& program)
     auto verb = program.verb("health", "Exit 0 if a service of this host handles frames, without joining DDS");
     auto options = std::make_shared<HealthOptions>();
     verb.option("name", options->name, "The process's name in the system file").required();
-    verb.option("--domain", options->domain, "Its DDS domain, where several systems of this host have such a process").within(bus::bus_record(), "domain");
+    verb.option("--domain", options->domain, "Its DDS domain, where several systems of this host have such a process")
+        .within(bus::bus_record(), "domain");
     verb.option("--unit", options->unit, "Its unit, likewise").within(system::unit_ids);
     verb.option("--fresh", options->fresh_s, "A heartbeat older than this is stale").within(settings::above_zero).value_name("S").shows_default();
     verb.footer("Example:\n  quorient health fdi-a");

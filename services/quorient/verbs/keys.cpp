@@ -62,7 +62,9 @@ public:
         for (const auto& name : options_.renew) renew(name);
         for (const auto& name : options_.revoke) revoke(name);
         if (!options_.revoke.empty())
-            fmt::print("Processes read {}/shared/revoked.pem when they start: copy it to every host and restart them one after the other.\n", options_.out);
+            fmt::print(
+                "Processes read {}/shared/revoked.pem when they start: copy it to every host and restart them one after the other.\n",
+                options_.out);
     }
 
 private:
@@ -115,7 +117,8 @@ private:
         std::ranges::copy(options_.subscribe, std::back_inserter(member.access.subscribes));
         const auto* known = authority_.find(member.name);
         if (known && !known->revoked)
-            fail(fmt::format("'{}' has an identity already: --renew {} gives it new keys, --revoke {} ends it", member.name, member.name, member.name));
+            fail(fmt::format("'{}' has an identity already: --renew {} gives it new keys, --revoke {} ends it", member.name, member.name,
+                             member.name));
         issue(member, "made");
     }
 

@@ -125,7 +125,8 @@ std::string writable_log(const std::string& name)
 {
     const auto file = (runtime::run_directory() / (name + ".log")).string();
     errno = 0;
-    if (!std::ofstream(file, std::ios::app)) fail(fmt::format("{}: cannot be written: {}; QUORIENT_RUN_DIR chooses another folder", file, std::strerror(errno)));
+    if (!std::ofstream(file, std::ios::app))
+        fail(fmt::format("{}: cannot be written: {}; QUORIENT_RUN_DIR chooses another folder", file, std::strerror(errno)));
     return file;
 }
 
@@ -235,7 +236,8 @@ private:
     void tell_death(const launch::Child& child)
     {
         constexpr int not_started = 127;
-        if (child.exit_code == not_started) fmt::print(stderr, "{} cannot be started: {} is missing, or no program\n", child.name, child.command.front());
+        if (child.exit_code == not_started)
+            fmt::print(stderr, "{} cannot be started: {} is missing, or no program\n", child.name, child.command.front());
         else fmt::print(stderr, "{} ended with exit code {}{}; its log: {}\n", child.name, child.exit_code,
                    child.ended ? "" : ", starting it again", child.log_file);
         if (child.ended) {
@@ -284,8 +286,8 @@ int launch_system(const LaunchOptions& options)
     if (!options.join) {
         const auto running = already_running(chosen, system.unit, **bus);
         if (!running.empty())
-            fail(fmt::format("unit {} already runs on domain {}: {}; stop it, choose another --domain, or give --join", system.unit, system.monitor.bus.domain,
-                             fmt::join(running, ", ")));
+            fail(fmt::format("unit {} already runs on domain {}: {}; stop it, choose another --domain, or give --join", system.unit,
+                             system.monitor.bus.domain, fmt::join(running, ", ")));
     }
     return Run{options, chosen, system, **bus}.run();
 }

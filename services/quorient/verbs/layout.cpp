@@ -80,7 +80,8 @@ void print_layout(const LayoutOptions& options)
         return;
     }
     fmt::print("{}", layout_text(options.choice.name(), *cluster, used));
-    if (options.design) fmt::print("\nwhat quorient design compares\n{}", figures_text(judged(*cluster, used), bounds_of(axes_in_use(used, *cluster))));
+    if (options.design)
+        fmt::print("\nwhat quorient design compares\n{}", figures_text(judged(*cluster, used), bounds_of(axes_in_use(used, *cluster))));
 }
 
 void run(const LayoutOptions& options)
@@ -102,7 +103,8 @@ void add_layout(Program& program)
         "  quorient layout dodecahedron --without 0,1\n");
     const auto options = std::make_shared<LayoutOptions>();
     const auto name = verb.option("name", options->choice.layout, "a layout of the catalogue").value_name("NAME");
-    const auto axes = verb.option("--axes", options->choice.axes_file, "a file of unit vectors: rows of x, y, z ('-' = stdin), or YAML of design or calibrate");
+    const auto axes = verb.option("--axes", options->choice.axes_file,
+                                  "a file of unit vectors: rows of x, y, z ('-' = stdin), or YAML of design or calibrate");
     const auto without =
         verb.numbers("--without", options->without, 0, "axes to leave out, as in 0,3");
     const auto table = verb.flag("--table", options->table, "the papers' tables beside ours, with the reason of every difference");

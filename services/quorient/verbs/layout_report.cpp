@@ -107,7 +107,8 @@ std::string layout_text(const std::string& name, const geometry::SensorCluster& 
     }
 
     fmt::format_to(std::back_inserter(text), "\naccuracy, (H'H)^-1 for unit noise\n  eigenvalues {}{}{}\n",
-                   report_cell(report.accuracy.eigenvalues(0)), report_cell(report.accuracy.eigenvalues(1)), report_cell(report.accuracy.eigenvalues(2)));
+                   report_cell(report.accuracy.eigenvalues(0)), report_cell(report.accuracy.eigenvalues(1)),
+                   report_cell(report.accuracy.eigenvalues(2)));
     fmt::format_to(std::back_inserter(text), "  trace       {}\n  volume      {}\n  condition   {}\n", report_cell(report.accuracy.trace),
                    report_cell(report.accuracy.volume), report_cell(report.accuracy.condition));
     fmt::format_to(std::back_inserter(text), "smallest angle between axes, as lines {} deg\n\n", report_cell(report.minimum_angle_deg));
@@ -116,8 +117,8 @@ std::string layout_text(const std::string& name, const geometry::SensorCluster& 
     append_matrix(text, "J of the minimal set", report.detection_index.transpose());
     append_matrix(text, "\nparity equations, one per axis", report.parity_equations);
     append_matrix(text, "J of the parity equations", report.isolation_index);
-    fmt::format_to(std::back_inserter(text), "\nF_d1 {}\nF_d2 {}\nF_d2, partner axes excluded {}\n", report_cell(report.f_d1), report_cell(report.f_d2),
-                   report_cell(report.f_d2_partner_excluded));
+    fmt::format_to(std::back_inserter(text), "\nF_d1 {}\nF_d2 {}\nF_d2, partner axes excluded {}\n", report_cell(report.f_d1),
+                   report_cell(report.f_d2), report_cell(report.f_d2_partner_excluded));
     fmt::format_to(std::back_inserter(text), "simultaneous axis faults of any size: {} detectable, {} isolable from one sample\n",
                    report.detectable, report.isolable);
     return text;

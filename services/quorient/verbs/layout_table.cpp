@@ -142,7 +142,8 @@ void append_table_4(std::string& text)
     for (const Architecture& row : architectures()) {
         const Merit merit = merit_of(row);
         fmt::format_to(std::back_inserter(text), "{:<4} {:<16}{}{}{}{}{}  {}\n", row.matrix, row.layout, table_cell(row.printed),
-                       table_cell(merit.compared()), table_cell(merit.compared() - row.printed), table_cell(merit.literal), table_cell(merit.f_d1), row.reason);
+                       table_cell(merit.compared()), table_cell(merit.compared() - row.printed), table_cell(merit.literal),
+                       table_cell(merit.f_d1), row.reason);
     }
 }
 

@@ -41,7 +41,8 @@ std::string known_names(const ClusterDescription& description)
 {
     std::string names = axis_names(description, all_axes(axes_of_unit(description)));
     for (std::size_t axis = 0; axis < axes_of_unit(description); ++axis)
-        if (const auto name = axis_name(description, axis); name != instrument_of(description, axis)) return names + fmt::format("; an axis is '{}'", name);
+        if (const auto name = axis_name(description, axis); name != instrument_of(description, axis))
+            return names + fmt::format("; an axis is '{}'", name);
     return names;
 }
 

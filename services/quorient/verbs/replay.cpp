@@ -165,7 +165,8 @@ void add_replay(Program& program)
     add_force(verb, options->force);
     verb.flag("--json", options->json, "One JSON object");
     verb.not_as_asked_if("the file's `expect` is not met");
-    verb.footer("Example:\n  quorient replay data.bin --system deploy/configurations/mimu4444.yaml --fault axis=7,kind=bias,value=1,start=14 --to 22 --json");
+    verb.footer(
+        "Example:\n  quorient replay data.bin --system deploy/configurations/mimu4444.yaml --fault axis=7,kind=bias,value=1,start=14 --to 22 --json");
     verb.run([options] {
         if (const int exit_code = replay(*options); exit_code != 0) throw Exit{exit_code};
     });

@@ -165,8 +165,12 @@ void add_motion_options(Verb& verb, const std::shared_ptr<SimulateOptions>& o)
     of_motion(verb.option("--half-angle-deg", o->half_angle_deg, "of the cone").within(settings::not_negative).shows_default(), o, "classic-coning");
     of_motion(verb.option("--frequency-hz", o->frequency_hz, "of the cone").within(settings::above_zero).shows_default(), o, "classic-coning");
     of_motion(verb.numbers("--rate-deg-s", o->rate_deg_s, 3, "body rate x,y,z"), o, "turn");
-    of_motion(verb.option("--bandwidth-hz", o->bandwidth_hz, "highest frequency of the angles").within(settings::above_zero).shows_default(), o, "random");
-    of_motion(verb.option("--rms-deg-s", o->rms_deg_s, "root mean square of the rate per axis").within(settings::not_negative).shows_default(), o, "random");
+    of_motion(
+        verb.option("--bandwidth-hz", o->bandwidth_hz, "highest frequency of the angles").within(settings::above_zero).shows_default(), o,
+        "random");
+    of_motion(
+        verb.option("--rms-deg-s", o->rms_deg_s, "root mean square of the rate per axis").within(settings::not_negative).shows_default(), o,
+        "random");
 }
 
 }  // namespace

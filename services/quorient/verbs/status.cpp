@@ -77,10 +77,9 @@ void print_services(const Services& services)
     for (const auto& [id, heard] : services) {
         const auto& status = heard.latest;
         fmt::print("{:<14}{:<12}{:<10}{:<12}{:<10}{:>9}{:>11.0f}{:>11.0f}{:>8}{:>8}{:>9}{:>10}\n", text_of(status.name),
-                   to_string(role_of(status)), to_string(state_of(status)),
-                   bus::to_string(vendor_of(status)), bus::to_string(transport_of(status)),
-                   heard.is_measured() ? fmt::format("{:.1f}", heard.rate_hz()) : "-", status.latency_s[0] * 1e6, status.latency_s[2] * 1e6, status.gaps, status.late, status.foreign,
-                   status.rejected);
+                   to_string(role_of(status)), to_string(state_of(status)), bus::to_string(vendor_of(status)),
+                   bus::to_string(transport_of(status)), heard.is_measured() ? fmt::format("{:.1f}", heard.rate_hz()) : "-",
+                   status.latency_s[0] * 1e6, status.latency_s[2] * 1e6, status.gaps, status.late, status.foreign, status.rejected);
     }
 }
 
@@ -219,10 +218,14 @@ int status(const StatusOptions& options)
 
 void add_status(Program& program)
 {
-    auto verb = program.verb("status", "Whether the attitude is good, and why; who is alive, on which transport, at which rate and latency; the latest events");
+    auto verb = program.verb(
+        "status", "Whether the attitude is good, and why; who is alive, on which transport, at which rate and latency; the latest events");
     auto options = std::make_shared<StatusOptions>();
     options->bus.add_to(verb);
-    verb.option("--seconds", options->seconds, "How long to listen; with --watch, how often to show").within(settings::above_zero).value_name("S").shows_default();
+    verb.option("--seconds", options->seconds, "How long to listen; with --watch, how often to show")
+        .within(settings::above_zero)
+        .value_name("S")
+        .shows_default();
     verb.option("--events", options->events, "How many events to show").shows_default();
     verb.flag("--watch", options->watch, "Go on until interrupted, and show it anew every --seconds");
     verb.flag("--json", options->json, "One JSON object; with --watch one per line each time");

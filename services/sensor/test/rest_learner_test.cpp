@@ -68,7 +68,8 @@ TEST_F(AtRest, nothing_is_learned_in_motion)
     EXPECT_EQ(run(steady, 10, [](double, std::size_t) { return 6 * degree; }), State::moving) << "a steady turn is quiet, but no rest";
 
     RestLearner later(instruments_, 2);
-    EXPECT_EQ(run(later, 10, [](double t, std::size_t) { return t < 1.2 ? 0.0 : 2.5 * degree; }), State::moving) << "a slow turn that begins meanwhile";
+    EXPECT_EQ(run(later, 10, [](double t, std::size_t) { return t < 1.2 ? 0.0 : 2.5 * degree; }), State::moving)
+        << "a slow turn that begins meanwhile";
     EXPECT_EQ(later.learned(), 0U);
 }
 

@@ -290,7 +290,8 @@ private:
         const auto condition = dds_create_readcondition(reader.handle(), DDS_ANY_STATE);
         if (condition < 0 || dds_waitset_attach(waitset_.handle(), condition, 0) < 0)
             throw Error(fmt::format("Cyclone DDS: {}: cannot wait for data", topic.name));
-        return std::make_unique<CycloneReader>(std::move(reader), topic.type, asked, settings_.security.has_value(), skips ? &skipped_ : nullptr, refusals_);
+        return std::make_unique<CycloneReader>(std::move(reader), topic.type, asked, settings_.security.has_value(),
+                                               skips ? &skipped_ : nullptr, refusals_);
     }
 
     static dds_instance_handle_t instance_of(const Entity& entity)

@@ -41,7 +41,8 @@ Refusals& library_refusals()
                 std::string text{entry->message, entry->size};
                 std::fprintf(stderr, "%s", text.c_str());
                 while (!text.empty() && text.back() == '\n') text.pop_back();
-                if ((entry->priority & (DDS_LC_ERROR | DDS_LC_WARNING)) != 0) static_cast<Refusals*>(target)->add(RefusalReason::security, "Cyclone DDS: " + text);
+                if ((entry->priority & (DDS_LC_ERROR | DDS_LC_WARNING)) != 0)
+                    static_cast<Refusals*>(target)->add(RefusalReason::security, "Cyclone DDS: " + text);
             },
             made);
         return made;

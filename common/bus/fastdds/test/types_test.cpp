@@ -109,7 +109,10 @@ TEST(FastTypes, lie_in_memory_as_the_plain_structs)
                   QUORIENT_MEMBER(detectable_remaining), QUORIENT_MEMBER(adopted), QUORIENT_MEMBER(padding)));
     EXPECT_EQ(plain_places<FaultDiagnosis>(),
               generated_places<quorient_msgs::FaultDiagnosis>(
-                  QUORIENT_MEMBER(epoch), QUORIENT_MEMBER(sequence_number), QUORIENT_MEMBER(sample_time_ns), QUORIENT_MEMBER(size), QUORIENT_MEMBER(sigma), QUORIENT_MEMBER(bias), QUORIENT_MEMBER(bias_sigma), QUORIENT_MEMBER(unit), QUORIENT_MEMBER(detector), QUORIENT_MEMBER(provisional_mask), QUORIENT_MEMBER(absent_mask), QUORIENT_MEMBER(degraded_mask), QUORIENT_MEMBER(diagnosis), QUORIENT_MEMBER(kind), QUORIENT_MEMBER(padding)));
+                  QUORIENT_MEMBER(epoch), QUORIENT_MEMBER(sequence_number), QUORIENT_MEMBER(sample_time_ns), QUORIENT_MEMBER(size),
+                  QUORIENT_MEMBER(sigma), QUORIENT_MEMBER(bias), QUORIENT_MEMBER(bias_sigma), QUORIENT_MEMBER(unit),
+                  QUORIENT_MEMBER(detector), QUORIENT_MEMBER(provisional_mask), QUORIENT_MEMBER(absent_mask),
+                  QUORIENT_MEMBER(degraded_mask), QUORIENT_MEMBER(diagnosis), QUORIENT_MEMBER(kind), QUORIENT_MEMBER(padding)));
     EXPECT_EQ(plain_places<AttitudeState>(),
               generated_places<quorient_msgs::AttitudeState>(
                   QUORIENT_MEMBER(epoch), QUORIENT_MEMBER(sequence_number), QUORIENT_MEMBER(sample_time_ns), QUORIENT_MEMBER(verdict_epoch),

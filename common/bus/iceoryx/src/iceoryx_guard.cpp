@@ -33,7 +33,8 @@ iox::units::Duration patience()
 /// A socket under this name in the folder where iceoryx looks for its processes, for as long as it lives.
 class ReplySocket {
 public:
-    explicit ReplySocket(const std::string& name) : file_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)), path_(iox::platform::IOX_UDS_SOCKET_PATH_PREFIX + name)
+    explicit ReplySocket(const std::string& name)
+        : file_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)), path_(iox::platform::IOX_UDS_SOCKET_PATH_PREFIX + name)
     {
         sockaddr_un address{};
         address.sun_family = AF_UNIX;

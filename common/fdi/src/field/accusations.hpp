@@ -16,7 +16,10 @@ public:
 
     /// @param least_in_use  members that are never left out together
     Accusations(std::size_t members, std::size_t least_in_use, double interval_s)
-        : members_(members), least_in_use_(least_in_use), calm_frames_(frames_in(calm_s, interval_s)), whipsaw_frames_(frames_in(whipsaw_s, interval_s))
+        : members_(members),
+          least_in_use_(least_in_use),
+          calm_frames_(frames_in(calm_s, interval_s)),
+          whipsaw_frames_(frames_in(whipsaw_s, interval_s))
     {
     }
 

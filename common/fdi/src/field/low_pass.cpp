@@ -49,7 +49,8 @@ void SlowPart::add(std::size_t component, const Input& input, InstrumentSet comp
     const double passed = std::sqrt(std::min(1.0, rate_ / 4));  // the share of white noise that passes
     Parameters& slow = regressors_[component];
     slow(bias) = 1;
-    for (Eigen::Index k = 0; k < 3; ++k) slow(gain_x + k) = dead_zone(slow(gain_x + k), std::max(rate_dead_zone * input.rate_noise(k) * passed, least_rate));
+    for (Eigen::Index k = 0; k < 3; ++k)
+        slow(gain_x + k) = dead_zone(slow(gain_x + k), std::max(rate_dead_zone * input.rate_noise(k) * passed, least_rate));
     const double noise = acceleration_dead_zone * input.noise * passed * corner_rad_s;
     slow(delay) = dead_zone(slow(delay), std::max(noise, least_acceleration));
 

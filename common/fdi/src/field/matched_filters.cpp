@@ -197,7 +197,9 @@ Suspicion MatchedFilters::disagreement(const WindowSums& sums, const Learning& l
             const double variance =
                 2 * learning.allowance(c, bias_sums.regressors) + bias_sums.noise[of[0]] + bias_sums.noise[of[1]];
             const double certain = difference / (Windows::disagreement_level * Windows::lasting_sigmas * std::sqrt(variance) + 1e-300);
-            if (difference * windows_.seconds(frames) <= Windows::least_lasting_angle_rad * over.component[c].weight || certain <= most.certainty) continue;
+            if (difference * windows_.seconds(frames) <= Windows::least_lasting_angle_rad * over.component[c].weight ||
+                certain <= most.certainty)
+                continue;
             most = {certain, of[0], c, frames, Filter::bias};
         }
     }

@@ -66,7 +66,8 @@ private:
     TwoTermNoise::Rates rate_;
     double mean_rate_;
     std::array<std::array<Pair, max_instruments * max_instruments>, component_count> pairs_;  ///< i < j
-    std::array<std::array<Ranked, max_pairs>, component_count> ranked_;  ///< the pairs by their variance; kept, since it changes little from frame to frame
+    std::array<std::array<Ranked, max_pairs>, component_count>
+        ranked_;  ///< the pairs by their variance; kept, since it changes little from frame to frame
     std::array<PerInstrument, component_count> mean_{};
     std::array<PerInstrument, component_count> others_{};
     std::array<PerInstrument, component_count> own_{};

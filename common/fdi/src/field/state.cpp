@@ -177,7 +177,8 @@ void FieldDetector::State::take_in(const field::Frame& frame)
 bool FieldDetector::State::may_learn() const
 {
     const bool knows_noise = history_.count() >= frames_in(field::noise_known_s);
-    return rules_.learning && knows_noise && accusations_.calm(history_.count()) && disturbance_ < field::largest_learned_from && comparable().size() >= 3;
+    return rules_.learning && knows_noise && accusations_.calm(history_.count()) && disturbance_ < field::largest_learned_from &&
+           comparable().size() >= 3;
 }
 
 /// The middle one of three frames.

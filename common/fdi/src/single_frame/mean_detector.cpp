@@ -34,7 +34,8 @@ tl::expected<std::unique_ptr<MeanDetector>, std::string> MeanDetector::make(cons
 {
     if (const auto figures = check_figures(settings); !figures) return tl::unexpected(figures.error());
     if (const auto enough = require_axes(cluster, 5, "mean"); !enough) return tl::unexpected(enough.error());
-    if (settings.tolerance) return std::unique_ptr<MeanDetector>(new MeanDetector(settings, cluster, geometry::AxisVector::Ones(cluster.axes.rows())));
+    if (settings.tolerance)
+        return std::unique_ptr<MeanDetector>(new MeanDetector(settings, cluster, geometry::AxisVector::Ones(cluster.axes.rows())));
     const auto sigma = sigma_of_axes(settings, cluster);
     if (!sigma) return tl::unexpected(sigma.error() + "; or set tolerance");
     return std::unique_ptr<MeanDetector>(new MeanDetector(settings, cluster, *sigma));

@@ -35,11 +35,13 @@ AxisMask read_by(const geometry::Triad& first, const geometry::Triad& second)
 
 }  // namespace
 
-tl::expected<std::unique_ptr<VotingDetector>, std::string> VotingDetector::make(const DetectorSettings& settings, const geometry::SensorCluster& cluster)
+tl::expected<std::unique_ptr<VotingDetector>, std::string> VotingDetector::make(const DetectorSettings& settings,
+                                                                                const geometry::SensorCluster& cluster)
 {
     if (const auto figures = check_figures(settings); !figures) return tl::unexpected(figures.error());
     if (const auto enough = require_axes(cluster, 6, "voting"); !enough) return tl::unexpected(enough.error());
-    if (settings.tolerance) return std::unique_ptr<VotingDetector>(new VotingDetector(settings, cluster, geometry::AxisVector::Ones(cluster.axes.rows())));
+    if (settings.tolerance)
+        return std::unique_ptr<VotingDetector>(new VotingDetector(settings, cluster, geometry::AxisVector::Ones(cluster.axes.rows())));
     const auto sigma = sigma_of_axes(settings, cluster);
     if (!sigma) return tl::unexpected(sigma.error() + "; or set tolerance");
     return std::unique_ptr<VotingDetector>(new VotingDetector(settings, cluster, *sigma));

@@ -66,7 +66,8 @@ AxisFilters::AxisFilters(const geometry::Axes& axes, double interval_s, const Fi
 {
 }
 
-Suspicions AxisFilters::examine(const AxisWindows& sums, const Allowance& allowance, AxisSet compared, const field::Ages& age, std::uint64_t frame) const
+Suspicions AxisFilters::examine(const AxisWindows& sums, const Allowance& allowance, AxisSet compared, const field::Ages& age,
+                                std::uint64_t frame) const
 {
     Suspicions found;
     AxisParity parity;

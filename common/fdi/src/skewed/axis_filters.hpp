@@ -21,10 +21,12 @@ public:
     /// @param age  frames that each axis has been compared for without a break
     /// @param frame  counts frames: which windows are due
     /// @returns suspicions of axes: `instrument` is the axis, `component` says nothing.
-    field::Suspicions examine(const AxisWindows& sums, const Allowance& allowance, AxisSet compared, const field::Ages& age, std::uint64_t frame) const;
+    field::Suspicions examine(const AxisWindows& sums, const Allowance& allowance, AxisSet compared, const field::Ages& age,
+                              std::uint64_t frame) const;
 
     /// The same for axes that leave one parity only, and cannot be distinguished: `instrument` has no meaning.
-    field::Suspicion disagreement(const AxisWindows& sums, const Allowance& allowance, AxisSet compared, const field::Ages& age, std::uint64_t frame) const;
+    field::Suspicion disagreement(const AxisWindows& sums, const Allowance& allowance, AxisSet compared, const field::Ages& age,
+                                  std::uint64_t frame) const;
 
 private:
     struct Window;

@@ -59,7 +59,8 @@ PerAxis AxisParity::residual(const PerAxis& z) const
     if (redundancy_ == 0) return residual;
     const Eigen::Vector3d explained = body(z);
     for (Eigen::Index i = 0; i < axes_.rows(); ++i)
-        if (set_.has(static_cast<std::size_t>(i))) residual[static_cast<std::size_t>(i)] = z[static_cast<std::size_t>(i)] - axes_.row(i).dot(explained);
+        if (set_.has(static_cast<std::size_t>(i)))
+            residual[static_cast<std::size_t>(i)] = z[static_cast<std::size_t>(i)] - axes_.row(i).dot(explained);
     return residual;
 }
 

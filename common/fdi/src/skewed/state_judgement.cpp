@@ -51,7 +51,8 @@ void SkewedDetector::State::judge_last_parity()
 {
     const AxisSet compared = comparable();
     comparison_.wander(framing_.interval_s());
-    const field::Suspicion suspicion = filters_.disagreement(comparison_.sums(), comparison_.allowance(), compared, history_.ages(), history_.count());
+    const field::Suspicion suspicion =
+        filters_.disagreement(comparison_.sums(), comparison_.allowance(), compared, history_.ages(), history_.count());
     certainty_ = suspicion.certainty;
     if (suspicion.certainty > 1) disagree(compared, suspicion.window);
 }
@@ -106,7 +107,9 @@ void SkewedDetector::State::acquit(std::size_t axis)
 void SkewedDetector::State::check_erratic()
 {
     const auto erratic = comparison_.erratic().finding(comparable());
-    if (erratic) name(erratic->instrument, accusations_.onset_or(erratic->instrument, history_.begin_of(history_.longest()), history_.count()), Diagnosis::erratic);
+    if (erratic)
+        name(erratic->instrument, accusations_.onset_or(erratic->instrument, history_.begin_of(history_.longest()), history_.count()),
+             Diagnosis::erratic);
 }
 
 /// What has been learned stays within the class.

@@ -57,7 +57,8 @@ struct UnitWords {
 
 // What stands behind a name, longest first where one ends with another.
 constexpr std::array unit_suffixes{
-    UnitWords{"degrees per second", "deg/s"}, UnitWords{"deg per sec", "deg/s"}, UnitWords{"radians per second", "rad/s"}, UnitWords{"rad per sec", "rad/s"},
+    UnitWords{"degrees per second", "deg/s"}, UnitWords{"deg per sec", "deg/s"},
+    UnitWords{"radians per second", "rad/s"}, UnitWords{"rad per sec", "rad/s"},
     UnitWords{"rad per s", "rad/s"}, UnitWords{"rad s", "rad/s"},   UnitWords{"rads", "rad/s"},    UnitWords{"radps", "rad/s"},
     UnitWords{"mrad s", "mrad/s"},   UnitWords{"deg per s", "deg/s"}, UnitWords{"deg s", "deg/s"},  UnitWords{"degs", "deg/s"},
     UnitWords{"degps", "deg/s"},     UnitWords{"dps", "deg/s"},     UnitWords{"mdps", "mdeg/s"},   UnitWords{"mdeg s", "mdeg/s"},

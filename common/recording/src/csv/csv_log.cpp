@@ -138,7 +138,8 @@ std::optional<ReadOutcome> CsvLog::read(std::size_t number, InstrumentSample& sa
     if (gyro.increments) {
         const double stated_s = gyro.interval ? sample.covered_s : 0;
         const double covered_s = stated_s > 0 ? stated_s : static_cast<double>(step_ns) * 1e-9;
-        if (!(covered_s > 0) || !std::isfinite(covered_s)) return std::nullopt;  // the first increment of a log stands for an interval that nothing states
+        if (!(covered_s > 0) || !std::isfinite(covered_s))
+            return std::nullopt;  // the first increment of a log stands for an interval that nothing states
         sample.covered_s = covered_s;
         for (std::size_t k = 0; k < 3; ++k) sample.rate_rad_s[k] = raw[k] / covered_s;
     }

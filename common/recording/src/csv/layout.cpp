@@ -173,7 +173,8 @@ std::optional<tl::expected<Layout, std::string>> read_layout(std::span<const std
             of_gyros = true;
             if (!time) continue;
             if (axes.size() % 3 != 0 && quantity == Quantity::increment && owner.empty())
-                return tl::unexpected(fmt::format("{} axes are no triads: replay such a log with a system file that names their layout", axes.size()));
+                return tl::unexpected(
+                    fmt::format("{} axes are no triads: replay such a log with a system file that names their layout", axes.size()));
             const bool numbered = quantity == Quantity::increment && columns[(*value)[0]].text.starts_with("increment_");
             if (numbered) add_numbered(columns, axes, *time, layout.gyros);
             else

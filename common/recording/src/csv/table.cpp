@@ -148,7 +148,8 @@ void split_plain(std::string_view line, char delimiter, std::vector<std::string_
 
 std::optional<double> missing_number(std::string_view text)
 {
-    for (const std::string_view missing : {"", "-", "--", "null", "NULL", "None", "NA", "N/A", "#N/A", "NaN", "n/a", "1.#QNAN", "-1.#IND", "1.#IND", "1.#INF", "-1.#INF"})
+    for (const std::string_view missing :
+         {"", "-", "--", "null", "NULL", "None", "NA", "N/A", "#N/A", "NaN", "n/a", "1.#QNAN", "-1.#IND", "1.#IND", "1.#INF", "-1.#INF"})
         if (text == missing) return std::numeric_limits<double>::quiet_NaN();
     return std::nullopt;
 }

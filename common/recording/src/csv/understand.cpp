@@ -200,7 +200,8 @@ std::optional<std::string> CsvLog::judge_times(std::size_t rows)
             const auto unit_ns = unit_of_step(step);
             if (!unit_ns) return fmt::format("the time steps by {:.6g}, which is no gyro's step in s, ms, us or ns: say --time-unit", step);
             gyro.time_unit_ns = *unit_ns;
-            const std::string remark = fmt::format("time read as {}, since its usual step is {}", word_of_time(*unit_ns), step < 1000 ? fmt::format("{:.6g}", step) : fmt::format("{:.0f}", step));
+            const std::string remark = fmt::format("time read as {}, since its usual step is {}", word_of_time(*unit_ns),
+                                                   step < 1000 ? fmt::format("{:.6g}", step) : fmt::format("{:.0f}", step));
             if (std::find(remarks_.begin(), remarks_.end(), remark) == remarks_.end()) remarks_.push_back(remark);
         }
         if (gyro.interval && gyro.interval_factor == 0 && !intervals.empty()) {
@@ -287,7 +288,8 @@ void CsvLog::doubt_stated_unit()
         judge.add(interval_s, sample.rate_rad_s, sample.acceleration_m_s2);
     }
     if (const auto times = judge.times_of_gravity(); times && (*times > 10 || *times < 0.1))
-        remarks_.push_back(fmt::format("the gyros' unit may be wrong: gravity turns {:.3g} times as far as their rates say; --unit overrides the header", *times));
+        remarks_.push_back(fmt::format(
+            "the gyros' unit may be wrong: gravity turns {:.3g} times as far as their rates say; --unit overrides the header", *times));
 }
 
 }  // namespace quorient::recording::csv

@@ -230,8 +230,10 @@ std::optional<ReadOutcome> FrameReader::judge(const SensorFrame& frame)
         return refuse_as(statistics_.irregular, "a frame of another epoch: the publisher started again, and its attitude is not known");
     if (usable_axes(frame) == 0) return refuse_as(statistics_.nan, "no axis has a finite value");
     if (!started_) return std::nullopt;
-    if (frame.sequence <= latest_.sequence) return refuse_as(statistics_.repeated, fmt::format("frame {} after {}", frame.sequence, latest_.sequence));
-    if (frame.sample_time_ns / 2 - origin_ns_ / 2 > longest_record_ns / 2) return refuse_as(statistics_.irregular, "a time decades after the first frame's");
+    if (frame.sequence <= latest_.sequence)
+        return refuse_as(statistics_.repeated, fmt::format("frame {} after {}", frame.sequence, latest_.sequence));
+    if (frame.sample_time_ns / 2 - origin_ns_ / 2 > longest_record_ns / 2)
+        return refuse_as(statistics_.irregular, "a time decades after the first frame's");
     if (frame.sample_time_ns <= latest_.sample_time_ns) return refuse_as(statistics_.irregular, "a time that does not go forward");
     return std::nullopt;
 }

@@ -24,7 +24,8 @@ public:
         std::size_t count = 0;
         while (count < into.size() && left_ > 0) {
             const Bytes there = whole_.peek(1);
-            const std::size_t taken = std::min({there.size(), into.size() - count, static_cast<std::size_t>(std::min<std::uint64_t>(left_, SIZE_MAX))});
+            const std::size_t taken =
+                std::min({there.size(), into.size() - count, static_cast<std::size_t>(std::min<std::uint64_t>(left_, SIZE_MAX))});
             if (taken == 0) break;
             std::copy_n(there.begin(), taken, into.begin() + static_cast<std::ptrdiff_t>(count));
             whole_.take(taken);

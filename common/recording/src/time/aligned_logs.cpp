@@ -86,7 +86,9 @@ ResampleSettings settings_of(const Survey& survey, double fastest_hz)
 
 struct AlignedLogs::State {
     State(const Survey& survey, const ResampleSettings& settings)
-        : one_epoch(survey.one_epoch), resampler(settings), interval_s(settings.period_s[settings.leader] * static_cast<double>(settings.samples_per_frame))
+        : one_epoch(survey.one_epoch),
+          resampler(settings),
+          interval_s(settings.period_s[settings.leader] * static_cast<double>(settings.samples_per_frame))
     {
         for (const std::size_t i : survey.compared) {
             const SurveyedInstrument& instrument = survey.instruments[i];

@@ -96,7 +96,8 @@ void Resampler::push_ends(std::int64_t up_to_ns, double since_s)
     }
     const auto count = std::max<std::int64_t>(1, std::llround(since_s / interval_s_));
     const std::int64_t begin_ns = *last_end_ns_;
-    for (std::int64_t i = 1; i <= count; ++i) ends_ns_.push_back(begin_ns + (up_to_ns - begin_ns) / count * i + (i == count ? (up_to_ns - begin_ns) % count : 0));
+    for (std::int64_t i = 1; i <= count; ++i)
+        ends_ns_.push_back(begin_ns + (up_to_ns - begin_ns) / count * i + (i == count ? (up_to_ns - begin_ns) % count : 0));
     *last_end_ns_ = up_to_ns;
 }
 

@@ -150,7 +150,8 @@ void sort_by_number(std::span<SurveyedInstrument> instruments)
 {
     for (auto begin = instruments.begin(); begin != instruments.end();) {
         const auto same = [&](const SurveyedInstrument& other) {
-            return other.instrument.source == begin->instrument.source && numbered(other.instrument.name).first == numbered(begin->instrument.name).first;
+            return other.instrument.source == begin->instrument.source &&
+                   numbered(other.instrument.name).first == numbered(begin->instrument.name).first;
         };
         const auto end = std::find_if_not(begin, instruments.end(), same);
         std::stable_sort(begin, end, [](const SurveyedInstrument& a, const SurveyedInstrument& b) {
@@ -256,8 +257,9 @@ tl::expected<Survey, std::string> survey(std::span<const std::filesystem::path> 
     if (found.instruments.empty()) return tl::unexpected(fmt::format("{}: no gyro in it", files.front().string()));
     for (const SurveyedInstrument& instrument : found.instruments)
         if (instrument.figures.is_beyond_gyros())
-            found.remarks.push_back(fmt::format("{}: {} of {} samples are beyond 4500 deg/s, which no gyro reads: the unit is probably wrong (--unit states that of a table)",
-                                                instrument.instrument.name, instrument.figures.beyond_gyros, instrument.figures.samples));
+            found.remarks.push_back(fmt::format(
+                "{}: {} of {} samples are beyond 4500 deg/s, which no gyro reads: the unit is probably wrong (--unit states that of a table)",
+                instrument.instrument.name, instrument.figures.beyond_gyros, instrument.figures.samples));
     found.one_epoch = share_an_epoch(found.logs);
     choose_compared(found);
     return found;

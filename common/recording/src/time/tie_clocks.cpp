@@ -39,7 +39,9 @@ Rate common_mean(const SurveyedInstrument& instrument, const SurveyedInstrument&
         if (own.empty() || theirs.empty()) continue;
         for (const KeptSample& sample : own) {
             const auto& rate = sample.rate_rad_s;
-            if (sample.time_ns < theirs.front().time_ns || sample.time_ns > theirs.back().time_ns || !std::isfinite(rate[0] + rate[1] + rate[2])) continue;
+            if (sample.time_ns < theirs.front().time_ns || sample.time_ns > theirs.back().time_ns ||
+                !std::isfinite(rate[0] + rate[1] + rate[2]))
+                continue;
             for (std::size_t part = 0; part < 3; ++part) sum[part] += static_cast<double>(rate[part]);
             ++count;
         }
@@ -58,7 +60,8 @@ Profile angle_profile(const KeptWindow& window, const std::vector<std::int64_t>&
         const double from_s = static_cast<double>(time_ns[i - 1] - begin_ns) * 1e-9;
         const double to_s = static_cast<double>(time_ns[i] - begin_ns) * 1e-9;
         const auto& rate = window[i].rate_rad_s;
-        const double speed = std::hypot(static_cast<double>(rate[0]) - mean[0], static_cast<double>(rate[1]) - mean[1], static_cast<double>(rate[2]) - mean[2]);
+        const double speed = std::hypot(static_cast<double>(rate[0]) - mean[0], static_cast<double>(rate[1]) - mean[1],
+                                        static_cast<double>(rate[2]) - mean[2]);
         if (!(to_s > from_s) || to_s - from_s > 0.2 || !std::isfinite(speed)) continue;
         const double last = std::min(static_cast<double>(count), std::floor(to_s / grid_s));
         for (double point = std::ceil(std::max(0.0, from_s) / grid_s); point <= last; ++point)
@@ -314,10 +317,11 @@ private:
         clock.correlation = std::max(0.0, top.correlation);
         const bool same_log = instrument.log == survey_.instruments[survey_.compared.front()].log;
         if (!same_log && !survey_.one_epoch && top.correlation < same_motion_correlation)
-            return tl::unexpected(fmt::format("{} and {} do not show the same motion: their rates of turn correlate by {:.2f} at best, {} is needed "
-                                              "(offsets up to {} s were tried)",
-                                              survey_.logs.front().name, survey_.logs[instrument.log].name, clock.correlation, same_motion_correlation,
-                                              other_epoch_lag_s));
+            return tl::unexpected(
+                fmt::format("{} and {} do not show the same motion: their rates of turn correlate by {:.2f} at best, {} is needed "
+                            "(offsets up to {} s were tried)",
+                            survey_.logs.front().name, survey_.logs[instrument.log].name, clock.correlation, same_motion_correlation,
+                            other_epoch_lag_s));
         if (top.correlation < tied_correlation && (same_log || survey_.one_epoch)) return {};
         if (!top.inside || top.curvature > -least_curvature || lag_error_s(reference, other, top) > largest_lag_error_s) return {};
         clock.tied = true;

@@ -205,7 +205,8 @@ void UlogLog::note_dropout(Bytes content)
         dropout_remark_ = remarks_.size();
         remarks_.emplace_back();
     }
-    remarks_[*dropout_remark_] = fmt::format("the logger was too slow and dropped {} ms in {} dropout{}", dropout_ms_, dropouts_, dropouts_ == 1 ? "" : "s");
+    remarks_[*dropout_remark_] =
+        fmt::format("the logger was too slow and dropped {} ms in {} dropout{}", dropout_ms_, dropouts_, dropouts_ == 1 ? "" : "s");
 }
 
 /// Passes over what is no message to the next synchronisation message.

@@ -149,7 +149,8 @@ Table<SourceSection> log_table()
              scenario_rows({"seed", "noise_rad", "quantum_rad"}), passed_over<SourceSection>({.name = "motion", .sentence = of_simulation}),
              passed_over<SourceSection>({.name = "duration_s", .sentence = of_simulation}),
              passed_over<SourceSection>({.name = "quantize", .sentence = of_simulation}), imus_row(),
-             passed_over<SourceSection>({.name = "skew_s", .sentence = "Passed over, so that a file for ROS 2 serves to replay its own recording."})}};
+             passed_over<SourceSection>(
+                 {.name = "skew_s", .sentence = "Passed over, so that a file for ROS 2 serves to replay its own recording."})}};
 }
 
 template <SensorKind unit_kind>
