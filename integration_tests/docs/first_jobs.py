@@ -155,7 +155,7 @@ def job_own_hardware(page):
             page.show("quorient status | head -3")
 
 
-ROBOT = """name: a robot's three IMUs
+THREE_IMUS = """name: a robot's three IMUs
 domain: 42
 unit: {id: 1, name: robot, initial_attitude: [1, 0, 0, 0]}
 source:
@@ -178,7 +178,7 @@ voting: {patience: 1, silence_intervals: 10}
 
 def job_ros2(page):
     page.say("## 3. Three ROS 2 IMUs\n\nThe system file, from the keys of [system-file.md](../../docs/system-file.md). A plain DDS node stands for the drivers.")
-    page.write("robot.yaml", ROBOT)
+    page.write("robot.yaml", THREE_IMUS)
     shutil.copy(build(INTEROP / "ros2_node_cyclonedds", "ros2_node_cyclonedds"), page.folder / "drivers")
     page.show("cat robot.yaml", "quorient check robot.yaml > /dev/null && echo the file is good")
     page.say("First the drivers do not run:")

@@ -130,7 +130,7 @@ class Out(Ros2Test):
         self.assertEqual(imus(log), [])
 
 
-ROBOT = """
+FOUR_IMUS = """
 name: a robot's IMUs
 domain: 42
 dds: cyclonedds
@@ -168,7 +168,7 @@ class In(Ros2Test):
     """One robot, one pipeline, each mistake of its second IMU in turn, then a real fault of the third."""
 
     def test_a_faulty_imu_costs_its_own_axes_and_nothing_else(self):
-        configuration = self.write("robot.yaml", ROBOT)
+        configuration = self.write("robot.yaml", FOUR_IMUS)
         events, frames, voted = (self.echo_logged(topic) for topic in ("event", "frame", "voter_output"))
         # The robot is this machine's in any case: release-root passes only SIGINT and SIGTERM on.
         robot, said = self.start_logged("robot", *node("ros2_node_cyclonedds"), self.domain, "robot")
