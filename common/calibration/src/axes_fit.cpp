@@ -1,12 +1,12 @@
 #include "quorient/calibration/axes_fit.hpp"
 
+#include "quorient/geometry/triads.hpp"
 #include "quorient/rotation/nearest.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace quorient::calibration {
 namespace {
@@ -22,15 +22,6 @@ std::vector<std::vector<Eigen::Index>> rows_of_instruments(const std::vector<std
     std::vector<std::vector<Eigen::Index>> rows(*std::max_element(instrument.begin(), instrument.end()) + 1);
     for (std::size_t axis = 0; axis < instrument.size(); ++axis) rows[instrument[axis]].push_back(static_cast<Eigen::Index>(axis));
     return rows;
-}
-
-/// One instrument's own body rates are this times the rates of its axes; nothing if they do not span the space.
-std::optional<Eigen::Matrix3Xd> body_from_axes(const geometry::Axes& nominal, const std::vector<Eigen::Index>& rows)
-{
-    const Eigen::MatrixX3d axes = nominal(rows, Eigen::all);
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixX3d> solver(axes);
-    if (solver.rank() < 3) return std::nullopt;
-    return solver.solve(Eigen::MatrixXd::Identity(axes.rows(), axes.rows()));
 }
 
 }  // namespace
@@ -76,10 +67,11 @@ geometry::Axes turned(const geometry::Axes& nominal, const std::vector<std::size
 geometry::Axes mounted(const RateMoment& motion, const geometry::Axes& nominal, const std::vector<std::size_t>& instrument)
 {
     const auto rows = rows_of_instruments(instrument);
-    const auto first = body_from_axes(nominal, rows.front());
+    const auto body_from = [&nominal](const std::vector<Eigen::Index>& own) { return geometry::least_squares_inverse(nominal(own, Eigen::all)); };
+    const auto first = body_from(rows.front());
     std::vector<Eigen::Matrix3d> to_first(rows.size(), Eigen::Matrix3d::Identity());
     for (std::size_t i = 1; i < rows.size() && first; ++i) {
-        const auto own = body_from_axes(nominal, rows[i]);
+        const auto own = body_from(rows[i]);
         if (own) to_first[i] = rotation::nearest_rotation(*first * motion.sum()(rows.front(), rows[i]) * own->transpose());
     }
     return turned(nominal, instrument, to_first);

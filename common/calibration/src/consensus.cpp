@@ -1,5 +1,6 @@
 #include "quorient/calibration/consensus.hpp"
 
+#include "quorient/geometry/triads.hpp"
 #include "quorient/rotation/nearest.hpp"
 
 #include <Eigen/Dense>
@@ -46,11 +47,10 @@ std::vector<Instrument> instruments_of(const Eigen::MatrixXd& measured, const ge
     for (std::size_t axis = 0; axis < cluster.size(); ++axis)
         instruments[cluster.instrument[axis]].axes.push_back(static_cast<Eigen::Index>(axis));
     for (Instrument& instrument : instruments) {
-        const Eigen::MatrixX3d h = cluster.axes(instrument.axes, Eigen::all);
-        const Eigen::ColPivHouseholderQR<Eigen::MatrixX3d> solver(h);
-        if (solver.rank() < 3) return {};
+        const auto body_from_axes = geometry::least_squares_inverse(cluster.axes(instrument.axes, Eigen::all));
+        if (!body_from_axes) return {};
         instrument.rates.setOnes(measured.rows(), 4);
-        instrument.rates.leftCols<3>() = solver.solve(measured(Eigen::all, instrument.axes).transpose()).transpose();
+        instrument.rates.leftCols<3>() = measured(Eigen::all, instrument.axes) * body_from_axes->transpose();
         const Eigen::MatrixX3d moving = instrument.rates.leftCols<3>().rowwise() - instrument.rates.leftCols<3>().colwise().mean();
         const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(moving.transpose() * moving / static_cast<double>(measured.rows()));
         instrument.weakest_motion = std::sqrt(std::max(0.0, spread.eigenvalues()(0)));
@@ -66,6 +66,12 @@ double median_magnitude(Eigen::VectorXd values)
     return values(middle);
 }
 
+Eigen::Matrix4d pseudo_inverse(const Eigen::Matrix4d& normal)
+{
+    return Eigen::JacobiSVD<Eigen::Matrix4d, Eigen::NoQRPreconditioner>(normal, Eigen::ComputeFullU | Eigen::ComputeFullV)
+        .solve(Eigen::Matrix4d::Identity());
+}
+
 /// One axis by Huber's M-estimate; its figures go into the fit.
 void fit_axis(const Eigen::MatrixX4d& rates, const Eigen::VectorXd& measured, PairFit& fit)
 {
@@ -75,7 +81,7 @@ void fit_axis(const Eigen::MatrixX4d& rates, const Eigen::VectorXd& measured, Pa
     double deviation = 0;
     for (int round = 0; round < reweightings; ++round) {
         const Eigen::Matrix4d normal = rates.transpose() * weight.asDiagonal() * rates;
-        covariance = normal.completeOrthogonalDecomposition().pseudoInverse();
+        covariance = pseudo_inverse(normal);
         found = covariance * (rates.transpose() * (weight.asDiagonal() * measured));
         const Eigen::VectorXd residual = measured - rates * found;
         deviation = std::max(1e-12, sigma_of_median * median_magnitude(residual));

@@ -1,8 +1,9 @@
 #include "quorient/diagnosis/px4_rule.hpp"
 
+#include "quorient/geometry/triads.hpp"
 #include "quorient/messages/units.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 
 namespace quorient::diagnosis {
@@ -21,10 +22,9 @@ Px4Rule::Px4Rule(const geometry::SensorCluster& cluster) : size_(cluster.axes.ro
         Instrument instrument;
         instrument.axes = cluster.axes_of(number);
         if (instrument.axes == 0) continue;
-        Eigen::MatrixX3d axes = cluster.axes;
-        for (Eigen::Index axis = 0; axis < size_; ++axis)
-            if (!has_axis(instrument.axes, static_cast<std::size_t>(axis))) axes.row(axis).setZero();
-        instrument.body_from_axes = (axes.transpose() * axes).inverse() * axes.transpose();
+        const auto body_from_axes = geometry::least_squares_inverse(cluster.axes, instrument.axes);
+        if (!body_from_axes) continue;
+        instrument.body_from_axes = *body_from_axes;
         instruments_.push_back(std::move(instrument));
     }
 }
