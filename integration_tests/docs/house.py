@@ -28,7 +28,8 @@ RULES = (
     ("a publisher that restarts is silent for max(5 intervals, 100 ms)", 2, r"std::max\((silent_intervals|durations\.silence_ns)", CODE_FOLDERS),
     ("vouched means FULL or DEGRADED", 2, r"VoteLevel::full \|\|", CODE_FOLDERS),
     ("frames are missing before this one", 7, r"sequence - (newest_|previous_|last_|latest_)(\.|->)sequence - 1|sequence - next_sequence_"
-     r"|missing = last_->sequence \+ 1|0 : newest_\.sequence \+ 1|\(sequence - last_sequence\)", CODE_FOLDERS),
+     r"|missing = last_->sequence \+ 1|0 : newest_\.sequence \+ 1|\(sequence - last_sequence\)|sequence - \(frame\.epoch == next_"
+     r"|latest_->sequence - 1", CODE_FOLDERS),
     ("an axis is usable", 4, r"isfinite\((measurement\.)?increment(\[|\))", FDI),
     ("angle between attitudes", 3, r"2 \* std::a(cos|tan2\(q)", CODE_FOLDERS),
     ("words of codes", 2, r'VoteLevel::single, "', CODE_FOLDERS),

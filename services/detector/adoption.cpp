@@ -22,14 +22,13 @@ const char* to_string(AdoptionState state)
 
 void Adoption::on_frame(Identity frame)
 {
-    const bool first_of_epoch = frame.epoch != newest_.epoch;
-    const std::uint64_t expected = first_of_epoch ? 0 : newest_.sequence + 1;
-    if (first_of_epoch || frame.sequence > expected) {
-        first_missing_ = expected;
+    const std::uint64_t missing = place_.missing_before(frame);
+    if (missing > 0 || frame.epoch != place_.next().epoch) {
+        first_missing_ = frame.sequence - missing;
         end_missing_ = frame.sequence;
         if (state_ != AdoptionState::restarted) stop_adopting_all();
     }
-    newest_ = frame;
+    place_ = StreamPlace::behind(frame);
 }
 
 void Adoption::on_verdict(const FaultVerdict& verdict)
@@ -80,7 +79,7 @@ Exclusions Adoption::missed(const VotedAttitude& voted, AxisMask isolated) const
 {
     Exclusions missed;
     const auto vouched = vouched_exclusions(voted);
-    if (state_ != AdoptionState::missed_frames || !vouched || voted.epoch != newest_.epoch) return missed;
+    if (state_ != AdoptionState::missed_frames || !vouched || voted.epoch != place_.next().epoch) return missed;
     for (std::size_t axis = 0; axis < max_axes; ++axis) {
         const std::uint64_t onset = (*vouched)[axis];
         if (onset == never || has_axis(isolated, axis)) continue;

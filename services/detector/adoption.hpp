@@ -4,6 +4,7 @@
 #include "quorient/messages/exclusions.hpp"
 #include "quorient/messages/fault_verdict.hpp"
 #include "quorient/messages/identity.hpp"
+#include "quorient/messages/stream_place.hpp"
 #include "quorient/messages/voted_attitude.hpp"
 
 #include <array>
@@ -72,7 +73,7 @@ private:
     std::uint64_t warm_up_frames_;
     Kept of_lane_;                     // its newest exclusions; of no use once the state is not `restarted`
     Kept of_voters_;                   // likewise
-    Identity newest_;                  // among all frames
+    StreamPlace place_;                // behind the newest frame
     std::uint64_t first_missing_ = 0;  // frames [first_missing_, end_missing_) of its epoch never came; end_missing_ 0 where all came
     std::uint64_t end_missing_ = 0;
 };

@@ -20,8 +20,7 @@ void set_increment(Record& record, std::size_t axis, double increment)
 void FrameStream::begin_epoch(std::uint64_t epoch)
 {
     knowledge_ = Knowledge::angles;
-    epoch_ = epoch;
-    next_sequence_ = 0;
+    place_ = StreamPlace::at_begin_of(epoch);
     accumulated_.fill(0);
     missed_.fill(0);
 }
@@ -29,14 +28,13 @@ void FrameStream::begin_epoch(std::uint64_t epoch)
 void FrameStream::go_on_after(Identity identity)
 {
     knowledge_ = Knowledge::place;
-    epoch_ = identity.epoch;
-    next_sequence_ = identity.sequence + 1;
+    place_ = StreamPlace::behind(identity);
 }
 
 void FrameStream::write_gap(const SensorFrame& frame, Record& record) const
 {
     const std::uint64_t lost = lost_before(frame);
-    record.first_sequence = next_sequence_;
+    record.first_sequence = next_sequence();
     record.last_sequence = frame.sequence - 1;
     record.interval_s = static_cast<double>(lost) * frame.interval_s;
     record.bridge = true;
@@ -60,7 +58,7 @@ void FrameStream::take(const SensorFrame& frame)
 {
     bridged_ = lost_before(frame) > 0;
     knowledge_ = Knowledge::angles;
-    next_sequence_ = frame.sequence + 1;
+    place_ = StreamPlace::behind(identity_of(frame));
     sample_time_ns_ = frame.sample_time_ns;
     accumulated_ = frame.accumulated;
     missed_ = frame.missed;

@@ -3,6 +3,7 @@
 #include "history.hpp"
 #include "quorient/messages/identity.hpp"
 #include "quorient/messages/sensor_frame.hpp"
+#include "quorient/messages/stream_place.hpp"
 
 #include <array>
 
@@ -22,19 +23,19 @@ public:
 
     Knowledge knowledge() const { return knowledge_; }
     bool has_epoch() const { return knowledge_ != Knowledge::nothing; }
-    bool is_epoch(std::uint64_t epoch) const { return has_epoch() && epoch == epoch_; }
-    std::uint64_t epoch() const { return epoch_; }
-    std::uint64_t next_sequence() const { return next_sequence_; }
+    bool is_epoch(std::uint64_t epoch) const { return has_epoch() && epoch == this->epoch(); }
+    std::uint64_t epoch() const { return place_.next().epoch; }
+    std::uint64_t next_sequence() const { return place_.next().sequence; }
     std::int64_t sample_time_ns() const { return sample_time_ns_; }
 
     /// Frames are missing before the newest one.
     bool is_bridged() const { return bridged_; }
 
     /// Older than one that came before, or the same.
-    bool has_passed(Identity identity) const { return has_epoch() && identity < Identity{epoch_, next_sequence_}; }
+    bool has_passed(Identity identity) const { return has_epoch() && identity < place_.next(); }
 
     /// An epoch before this one.
-    bool has_passed_epoch(std::uint64_t epoch) const { return has_epoch() && epoch < epoch_; }
+    bool has_passed_epoch(std::uint64_t epoch) const { return has_epoch() && epoch < this->epoch(); }
 
     void begin_epoch(std::uint64_t epoch);
 
@@ -42,7 +43,7 @@ public:
     void go_on_after(Identity identity);
 
     /// Frames that never arrived before this one, of the same epoch.
-    std::uint64_t lost_before(const SensorFrame& frame) const { return frame.sequence - next_sequence_; }
+    std::uint64_t lost_before(const SensorFrame& frame) const { return place_.missing_before(identity_of(frame)); }
 
     /// The frames that are missing before this one, as one interval. Only axes that missed nothing in it are valid.
     void write_gap(const SensorFrame& frame, Record& record) const;
@@ -56,11 +57,10 @@ public:
 private:
     std::size_t axis_count_;
     Knowledge knowledge_ = Knowledge::nothing;
-    std::uint64_t epoch_ = 0;
-    std::uint64_t next_sequence_ = 0;
+    StreamPlace place_;
     std::int64_t sample_time_ns_ = 0;             // the newest frame's
     bool bridged_ = false;                        // likewise
-    std::array<double, max_axes> accumulated_{};  // up to the frame before next_sequence_, where its angles are known
+    std::array<double, max_axes> accumulated_{};  // up to the frame before next_sequence(), where its angles are known
     std::array<std::uint32_t, max_axes> missed_{};
 };
 

@@ -2,6 +2,7 @@
 
 #include "quorient/messages/meaning.hpp"
 #include "quorient/messages/sample_time.hpp"
+#include "quorient/messages/stream_place.hpp"
 #include "quorient/messages/unit_kind.hpp"
 
 #include <algorithm>
@@ -116,7 +117,7 @@ bool FrameIntake::order(const SensorFrame& frame, std::int64_t now_ns)
             complain({.fault = Fault::sequence_restart, .identity = identity, .got = identity.sequence, .expected = newest_.sequence});
         return false;
     } else if (started_) {
-        counters_.gaps += identity.sequence - newest_.sequence - 1;
+        counters_.gaps += StreamPlace::behind(newest_).missing_before(identity);
     }
     started_ = true;
     older_in_a_row_ = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "quorient/fdi/detector.hpp"
+#include "quorient/messages/stream_place.hpp"
 
 #include <algorithm>
 
@@ -27,9 +28,8 @@ public:
     /// @returns whether a frame begins with this measurement; what was collected before it is void.
     bool begins(const Measurement& measurement)
     {
-        const bool follows =
-            measurement.identity.sequence == next_sequence_ && measurement.interval_s < gap_intervals * measurement_interval_s_;
-        next_sequence_ = measurement.identity.sequence + 1;
+        const bool follows = place_.follows(measurement.identity) && measurement.interval_s < gap_intervals * measurement_interval_s_;
+        place_ = StreamPlace::behind(measurement.identity);
         if (!follows) gap_ = true;
         if (!follows) collected_ = 0;
         return collected_ == 0;
@@ -59,7 +59,7 @@ private:
     std::size_t collected_ = 0;
     bool gap_ = true;  ///< since the last complete frame
     bool follows_ = false;
-    std::uint64_t next_sequence_ = 0;
+    StreamPlace place_;
 };
 
 }  // namespace quorient::fdi::field

@@ -118,7 +118,7 @@ void FieldDetector::State::advance(const field::Frame& frame)
     certainty_ = 0;
     if (!frame.follows) {
         pending_.clear();
-        if (learning_begun_) comparison_.learning().wander(field::missing_s(frame.sequence, last_sequence_, cluster_.interval_s));
+        if (learning_begun_) comparison_.learning().wander(field::time_between_s(last_sequence_, frame.sequence, cluster_.interval_s));
     }
     last_sequence_ = frame.sequence;
     const auto forgotten = static_cast<std::uint64_t>(field::forgotten_after_s / framing_.interval_s());

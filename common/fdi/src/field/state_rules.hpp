@@ -25,10 +25,10 @@ inline constexpr double misled_s = 1;
 
 inline constexpr std::uint64_t frames_between_diagnoses = 10;
 
-/// Time of the measurements that are missing between a frame and the latest one before it [s].
-inline double missing_s(std::uint64_t sequence, std::uint64_t last_sequence, double interval_s)
+/// Time from one frame's first measurement to the next frame's, of the same epoch [s].
+inline double time_between_s(std::uint64_t earlier, std::uint64_t later, double interval_s)
 {
-    return sequence > last_sequence ? static_cast<double>(sequence - last_sequence) * interval_s : 0;
+    return later > earlier ? static_cast<double>(later - earlier) * interval_s : 0;
 }
 
 /// What the comparison of any sensors needs to be known.

@@ -71,7 +71,7 @@ void FourAxisDetector::assess(const Measurement& measurement, Assessment& assess
 
     if (!follows(measurement) && !bridge_gap_before(measurement)) start_again();
     started_ = true;
-    previous_ = measurement.identity;
+    place_ = StreamPlace::behind(measurement.identity);
     interval_s_ = measurement.interval_s;
     if (holding_) ++held_frames_;
     if (usable == four_axes) {
@@ -108,19 +108,19 @@ std::optional<Expectation> FourAxisDetector::expectation(std::size_t axis) const
 
 bool FourAxisDetector::same_spacing(const Measurement& measurement) const
 {
-    const bool known = started_ && measurement.identity.epoch == previous_.epoch;
+    const bool known = started_ && measurement.identity.epoch == place_.next().epoch;
     return known && std::abs(measurement.interval_s - interval_s_) <= interval_tolerance * interval_s_;
 }
 
 bool FourAxisDetector::follows(const Measurement& measurement) const
 {
-    return same_spacing(measurement) && measurement.identity.sequence == previous_.sequence + 1;
+    return same_spacing(measurement) && place_.follows(measurement.identity);
 }
 
 bool FourAxisDetector::bridge_gap_before(const Measurement& measurement)
 {
     if (!predicts_over_gaps() || !same_spacing(measurement) || learnt() < warm_up_frames) return false;
-    const std::uint64_t missing = measurement.identity.sequence - previous_.sequence - 1;
+    const std::uint64_t missing = place_.missing_before(measurement.identity);
     const std::uint64_t held = holding_ ? held_frames_ + missing : missing - 1;  // a hold counts the frames behind its first one
     if (held >= longest_gap) return false;
     held_frames_ = static_cast<unsigned>(held);

@@ -4,6 +4,7 @@
 #include "quorient/fdi/settings.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"
 #include "quorient/geometry/triads.hpp"
+#include "quorient/messages/stream_place.hpp"
 
 #include <Eigen/Core>
 #include <array>
@@ -111,7 +112,7 @@ private:
     double bound_;
     AxisMask excluded_ = 0;
     bool started_ = false;
-    Identity previous_;
+    StreamPlace place_;  ///< behind the newest frame that was used
     double interval_s_ = 0;
     unsigned frames_ = 0;  ///< complete ones since the start, up to warm_up_frames
     bool holding_ = false;

@@ -8,7 +8,7 @@
 namespace quorient::fdi {
 namespace {
 
-/// Over a longer gap held samples say nothing any more.
+/// Over a gap of so many frames held samples say nothing any more.
 constexpr std::uint64_t longest_gap = 20;
 
 }  // namespace
@@ -39,7 +39,7 @@ void ObserverDetector::assess(const Measurement& measurement, Assessment& assess
     assessment.threshold = 1;
     if (!read_input(measurement)) {
         assessment.outcome = Outcome::blind;
-        last_.reset();
+        place_.reset();
         return;
     }
     follow_to(measurement);
@@ -50,7 +50,7 @@ void ObserverDetector::assess(const Measurement& measurement, Assessment& assess
     else judge_blind(assessment);
     if (bank_.scheme() == ObserverScheme::blind && frames_ < naming_frames_) withhold_names(assessment);
     bank_.advance(input_);
-    last_ = measurement.identity;
+    place_ = StreamPlace::behind(measurement.identity);
     ++frames_;
 }
 
@@ -70,14 +70,14 @@ void ObserverDetector::follow_to(const Measurement& measurement)
         const auto axis = static_cast<std::size_t>(channel);
         if (has_axis(measurement.valid, axis)) samples_(channel) = measurement.increment[axis] / measurement.interval_s;
     }
-    const bool follows = last_ && measurement.identity.epoch == last_->epoch && measurement.identity.sequence > last_->sequence &&
-                         measurement.identity.sequence - last_->sequence <= longest_gap;
-    if (!follows) {
+    const bool same_epoch = place_ && measurement.identity.epoch == place_->next().epoch;
+    const std::uint64_t missing = same_epoch ? place_->missing_before(measurement.identity) : longest_gap;
+    if (missing >= longest_gap) {
         settling_frames_ = bank_.start(samples_, measurement.valid & working());
         frames_ = alarm_frames_ = 0;
         return;
     }
-    for (std::uint64_t missing = last_->sequence + 1; missing < measurement.identity.sequence; ++missing) {
+    for (std::uint64_t bridged = 0; bridged < missing; ++bridged) {
         bank_.compare(samples_, 0);
         bank_.advance(input_);
     }
@@ -209,7 +209,7 @@ bool ObserverDetector::agrees_with(AxisMask trusted, AxisMask excluded) const
 
 std::string_view ObserverDetector::reason() const
 {
-    if (!last_) return "the known input is missing, and nothing can be expected without it";
+    if (!place_) return "the known input is missing, and nothing can be expected without it";
     return settled() ? std::string_view{} : "the observers settle: the samples do not tell the whole state";
 }
 

@@ -106,7 +106,7 @@ void SkewedDetector::State::advance(const skewed::AxisFrame& frame)
     certainty_ = 0;
     if (!frame.follows) {
         pending_.clear();
-        if (learning_begun_) comparison_.wander(field::missing_s(frame.sequence, last_sequence_, cluster_.interval_s));
+        if (learning_begun_) comparison_.wander(field::time_between_s(last_sequence_, frame.sequence, cluster_.interval_s));
     }
     last_sequence_ = frame.sequence;
     for (std::size_t i = 0; i < cluster_.size(); ++i)

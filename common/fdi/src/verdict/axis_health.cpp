@@ -53,8 +53,8 @@ void AxisHealth::reset()
 
 AxisMask AxisHealth::assess(const Measurement& measurement, AxisMask isolated)
 {
-    if (measurement.identity.sequence != sequence_ + 1) run_.fill({});
-    sequence_ = measurement.identity.sequence;
+    if (!place_.follows(measurement.identity)) run_.fill({});
+    place_ = StreamPlace::behind(measurement.identity);
     AxisMask here = 0;
     for (std::size_t axis = 0; axis < cluster_.size(); ++axis) {
         if (present(measurement, axis)) here |= axis_bit(axis);

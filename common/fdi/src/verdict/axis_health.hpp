@@ -2,6 +2,7 @@
 
 #include "quorient/fdi/detector.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"
+#include "quorient/messages/stream_place.hpp"
 #include "verdict/others_view.hpp"
 
 #include <array>
@@ -85,7 +86,7 @@ private:
     OthersView others_;
     AxisMask broken_ = 0;  ///< in the newest frame
     AxisMask trusted_ = 0;  ///< witnesses in the newest frame
-    std::uint64_t sequence_ = 0;  ///< the newest frame's
+    StreamPlace place_;  ///< behind the newest frame
     AxisMask absent_ = 0;
     std::array<std::uint32_t, max_axes> missing_{};  ///< bit k = without data k frames ago
     std::array<Run, max_axes> run_{};

@@ -2,6 +2,7 @@
 
 #include "quorient/fdi/detector.hpp"
 #include "quorient/fdi/observer_bank.hpp"
+#include "quorient/messages/stream_place.hpp"
 
 #include <memory>
 #include <optional>
@@ -42,7 +43,7 @@ public:
     unsigned detectable_remaining() const override;
     std::optional<Expectation> expectation(std::size_t channel) const override;
     std::string_view reason() const override;
-    void reset() override { last_.reset(); }
+    void reset() override { place_.reset(); }
 
     const ObserverBank& bank() const { return bank_; }
 
@@ -57,7 +58,7 @@ private:
     void judge_blind(Assessment& assessment) const;
     static void withhold_names(Assessment& assessment);
     void judge_last(AxisMask working, Assessment& assessment) const;
-    bool settled() const { return last_ && frames_ > settling_frames_; }
+    bool settled() const { return place_ && frames_ > settling_frames_; }
     bool agrees_with(AxisMask trusted, AxisMask excluded) const;
     double worst(std::size_t observer, AxisMask channels) const;
     void report(std::size_t observer, double interval_s, Assessment& assessment) const;
@@ -67,7 +68,7 @@ private:
     double interval_s_;
     double margin_;
     AxisMask excluded_ = 0;
-    std::optional<Identity> last_;
+    std::optional<StreamPlace> place_;
     AxisMask valid_ = 0;                 ///< the newest frame's
     std::uint64_t frames_ = 0;           ///< since the observers started
     std::uint64_t settling_frames_ = 0;  ///< those among them that show nothing yet
