@@ -25,7 +25,7 @@ FDI = ("common/fdi/src",)
 # A rule, the places that wrote it at cd3fac4 as the review counted them (of names of messages the pattern finds two more), and what finds those that write it now.
 RULES = (
     ("in a new epoch an exclusion counts from sequence 0", 5, r"!= never\) \w+\[axis\] = 0", CODE_FOLDERS),
-    ("a publisher that restarts is silent for max(5 intervals, 100 ms)", 2, r"std::max\((silent_intervals|durations\.silence_ns)", CODE_FOLDERS),
+    ("a publisher that restarts is silent for max(5 intervals, 100 ms)", 2, r"std::max\((silent_intervals|intervals \*)|least_grace_ns =", CODE_FOLDERS),
     ("vouched means FULL or DEGRADED", 2, r"VoteLevel::full \|\|", CODE_FOLDERS),
     ("frames are missing before this one", 7, r"sequence - (newest_|previous_|last_|latest_)(\.|->)sequence - 1|sequence - next_sequence_"
      r"|missing = last_->sequence \+ 1|0 : newest_\.sequence \+ 1|\(sequence - last_sequence\)|sequence - \(frame\.epoch == next_"

@@ -2,6 +2,7 @@
 
 #include "quorient/geometry/sensor_cluster.hpp"
 #include "quorient/messages/meaning.hpp"
+#include "quorient/messages/restart.hpp"
 #include "quorient/messages/words.hpp"
 #include "quorient/rotation/quaternion.hpp"
 
@@ -13,10 +14,6 @@ namespace {
 
 /// Attitudes whose truth never comes (a foreign publisher's) must not pile up.
 constexpr std::size_t most_waiting = 4096;
-
-// As services wait before they follow another publisher (runtime::FrameIntake).
-constexpr double silent_intervals = 5;
-constexpr double silent_at_least_s = 0.1;
 
 }  // namespace
 
@@ -103,7 +100,7 @@ void RunObserver::await(const TruthState& truth)
     if (!later.since_present.empty() && truth.sequence <= later.since_present.back().sequence) return;
     later.since_present.push_back(truth);
     const auto frames = truth.sequence - later.since_present.front().sequence + 1;
-    if (static_cast<double>(frames) * interval_s() < std::max(silent_intervals * interval_s(), silent_at_least_s)) return;
+    if (static_cast<double>(frames) * interval_s() < restart_silence_s(interval_s())) return;
     const LaterEpoch taken = std::move(later);
     later_.erase(later_.begin(), later_.upper_bound(truth.epoch));
     truth_.clear();

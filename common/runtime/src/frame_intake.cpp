@@ -1,6 +1,7 @@
 #include "quorient/runtime/frame_intake.hpp"
 
 #include "quorient/messages/meaning.hpp"
+#include "quorient/messages/restart.hpp"
 #include "quorient/messages/sample_time.hpp"
 #include "quorient/messages/stream_place.hpp"
 #include "quorient/messages/unit_kind.hpp"
@@ -11,9 +12,6 @@
 namespace quorient::runtime {
 
 namespace {
-
-constexpr double silent_intervals = 5;
-constexpr double silent_at_least_s = 0.1;
 
 /// A value at the end of its range is legal; rounding must not push it out.
 constexpr double range_tolerance = 1.0 + 1e-9;
@@ -102,8 +100,7 @@ bool FrameIntake::order(const SensorFrame& frame, std::int64_t now_ns)
 {
     const auto identity = identity_of(frame);
     if (started_ && identity.epoch != newest_.epoch) {
-        const double silence_s = std::max(silent_intervals * interval_s_, silent_at_least_s);
-        if (identity.epoch < newest_.epoch || static_cast<double>(now_ns - last_arrival_ns_) * 1e-9 < silence_s) {
+        if (identity.epoch < newest_.epoch || static_cast<double>(now_ns - last_arrival_ns_) * 1e-9 < restart_silence_s(interval_s_)) {
             ++counters_.foreign;
             foreign_epoch_ = identity.epoch;
             return false;

@@ -1,23 +1,19 @@
 #include "frames.hpp"
 
 #include "quorient/messages/left_out.hpp"
+#include "quorient/messages/restart.hpp"
+#include "quorient/messages/time.hpp"
 
 #include <algorithm>
 
 namespace quorient::voting {
-namespace {
-
-/// A publisher that restarts is silent for at least this long.
-constexpr std::int64_t least_grace_ns = 100'000'000;
-
-}  // namespace
 
 Frames::Frames(const VoterSettings& settings, const Durations& durations, Narrator& narrator, VoterCounters& counters)
     : settings_(settings),
       durations_(durations),
       majority_(settings.lanes.size() / 2 + 1),
       timeline_(durations.interval_ns),
-      newcomers_(settings.lanes.size(), majority_, std::max(durations.silence_ns, least_grace_ns)),
+      newcomers_(settings.lanes.size(), majority_, std::max(durations.silence_ns, nanoseconds(least_restart_silence_s))),
       corroboration_(settings.lanes.size(), majority_, settings.settle_frames, settings.return_frames, durations.silence_ns),
       board_(settings, majority_, corroboration_, narrator),
       narrator_(narrator),
