@@ -21,7 +21,7 @@ STATEFUL = {
 }
 LONG_FILE = 400
 CODE_FOLDERS = ("common", "services", "integration_tests/studies")
-FDI = ("common/fdi/src",)
+FDI = ("common/fdi",)
 # A rule, the places that wrote it at cd3fac4 as the review counted them (of names of messages the pattern finds two more), and what finds those that write it now.
 RULES = (
     ("in a new epoch an exclusion counts from sequence 0", 5, r"!= never\) \w+\[axis\] = 0", CODE_FOLDERS),

@@ -73,13 +73,8 @@ std::size_t InstrumentArray::compared_count() const
 
 bool InstrumentArray::complete(const Measurement& measurement) const
 {
-    for (std::size_t m = 0; m < size(); ++m) {
-        if (!compared(m)) continue;
-        for (std::size_t i = 0; i < instruments_[m].size; ++i) {
-            const std::size_t axis = instruments_[m].axis[i];
-            if (!has_axis(measurement.valid, axis) || !std::isfinite(measurement.increment[axis])) return false;
-        }
-    }
+    for (std::size_t m = 0; m < size(); ++m)
+        if (compared(m) && measurement.usable_of(instruments_[m].mask) != instruments_[m].mask) return false;
     return true;
 }
 

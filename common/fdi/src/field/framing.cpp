@@ -3,7 +3,6 @@
 #include "quorient/rotation/nearest.hpp"
 
 #include <Eigen/Dense>
-#include <cmath>
 
 namespace quorient::fdi::field {
 namespace {
@@ -21,12 +20,7 @@ Eigen::Matrix3d frame_along(const geometry::SensorCluster& cluster, const Instru
 InstrumentSet present_in(const Measurement& measurement, const InstrumentArray& array)
 {
     InstrumentSet present;
-    for (std::size_t m = 0; m < array.size(); ++m) {
-        const auto& instrument = array[m];
-        bool complete = (measurement.valid & instrument.mask) == instrument.mask;
-        for (std::size_t i = 0; complete && i < instrument.size; ++i) complete = std::isfinite(measurement.increment[instrument.axis[i]]);
-        present.set(m, complete);
-    }
+    for (std::size_t m = 0; m < array.size(); ++m) present.set(m, measurement.usable_of(array[m].mask) == array[m].mask);
     return present;
 }
 

@@ -64,9 +64,7 @@ void FourAxisDetector::assess(const Measurement& measurement, Assessment& assess
     assessment = {};
     assessment.threshold = bound_;
     assessment.outcome = Outcome::healthy;
-    AxisMask usable = measurement.valid & four_axes & ~excluded_;
-    for (std::size_t axis = 0; axis < axis_count; ++axis)
-        if (!std::isfinite(measurement.increment[axis])) usable &= ~axis_bit(axis);
+    const AxisMask usable = measurement.usable_of(four_axes & ~excluded_);
     if (std::popcount(usable) < 3) return;  // the next frame finds a gap
 
     if (!follows(measurement) && !bridge_gap_before(measurement)) start_again();
@@ -91,8 +89,8 @@ void FourAxisDetector::assess(const Measurement& measurement, Assessment& assess
 /// All four are measured, three are used.
 void FourAxisDetector::hear_excluded(const Measurement& measurement)
 {
+    if (measurement.usable_of(four_axes) != four_axes) return;
     const Eigen::Map<const Eigen::Vector4d> z(measurement.increment.data());
-    if ((measurement.valid & four_axes) != four_axes || !z.allFinite()) return;
     const double parity = parity_vector_.dot(z);
     const auto axis = std::countr_zero(excluded_);
     expected_ = z(axis) - parity / parity_vector_(axis);

@@ -2,8 +2,6 @@
 
 #include "quorient/geometry/redundancy.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace quorient::fdi {
@@ -18,11 +16,7 @@ FrameDetector::FrameDetector(geometry::SensorCluster cluster)
 void FrameDetector::assess(const Measurement& measurement, Assessment& assessment)
 {
     assessment = {};
-    AxisMask offered = 0;
-    const std::size_t given = std::min(cluster_.size(), measurement.increment.size());
-    for (std::size_t axis = 0; axis < given; ++axis)
-        if (std::isfinite(measurement.increment[axis])) offered |= axis_bit(axis);
-    work_with(offered & measurement.valid & ~excluded_);
+    work_with(measurement.usable_of(cluster_.all() & ~excluded_));
 
     for (std::size_t axis = 0; axis < cluster_.size(); ++axis)
         z_(static_cast<Eigen::Index>(axis)) = has_axis(working_, axis) ? measurement.increment[axis] : 0;

@@ -2,8 +2,6 @@
 
 #include "near_range.hpp"
 
-#include <cmath>
-
 namespace quorient::fdi::skewed {
 
 bool AxisFrames::add(const Measurement& measurement)
@@ -15,11 +13,11 @@ bool AxisFrames::add(const Measurement& measurement)
         building_.present = AxisSet::first(cluster_.size());
     }
     for (std::size_t i = 0; i < cluster_.size(); ++i) {
-        const double increment = measurement.increment[i];
-        if (!has_axis(measurement.valid, i) || !std::isfinite(increment)) {
+        if (!measurement.usable(i)) {
             building_.present.remove(i);
             continue;
         }
+        const double increment = measurement.increment[i];
         building_.rate[i] += increment;
         if (is_near_range(increment, cluster_.range(static_cast<Eigen::Index>(i)), measurement.interval_s)) building_.near_range.add(i);
     }

@@ -32,11 +32,6 @@ constexpr double quotient_rounding = 1e-12;
 constexpr unsigned habit_frames = 50;
 constexpr double habit_memory = 200;
 
-bool present(const Measurement& measurement, std::size_t axis)
-{
-    return has_axis(measurement.valid, axis) && std::isfinite(measurement.increment[axis]);
-}
-
 }  // namespace
 
 AxisHealth::AxisHealth(const geometry::SensorCluster& cluster) : cluster_(cluster), others_(cluster) {}
@@ -57,7 +52,7 @@ AxisMask AxisHealth::assess(const Measurement& measurement, AxisMask isolated)
     place_ = StreamPlace::behind(measurement.identity);
     AxisMask here = 0;
     for (std::size_t axis = 0; axis < cluster_.size(); ++axis) {
-        if (present(measurement, axis)) here |= axis_bit(axis);
+        if (measurement.usable(axis)) here |= axis_bit(axis);
         count_absence(axis, has_axis(here, axis));
     }
     trusted_ = here & ~broken_ & ~isolated;  // what was just broken does not count against others

@@ -6,6 +6,8 @@
 #include "quorient/messages/limits.hpp"
 
 #include <array>
+#include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -20,8 +22,22 @@ struct Measurement {
     Identity identity;
     double interval_s = 0;
     std::span<const double> increment;      ///< z, one per axis of the cluster [rad; m/s]
-    AxisMask valid = 0;                     ///< axes with a usable value in this frame
+    AxisMask valid = 0;                     ///< axes that claim a value in this frame
     std::span<const double> known_input{};  ///< e.g. the rudder angle [rad]
+
+    /// The axis has a value that can be used. Whether it is to be trusted is another matter.
+    bool usable(std::size_t axis) const { return has_axis(valid, axis) && axis < increment.size() && std::isfinite(increment[axis]); }
+
+    /// Those of `axes` that are usable.
+    AxisMask usable_of(AxisMask axes) const
+    {
+        AxisMask found = 0;
+        for (AxisMask left = axes & valid; left != 0; left &= left - 1) {
+            const auto axis = static_cast<std::size_t>(std::countr_zero(left));
+            if (usable(axis)) found |= axis_bit(axis);
+        }
+        return found;
+    }
 };
 
 /// What one frame says, before confirmation and latching.
