@@ -2,9 +2,8 @@
 #include "quorient/attitude/integrator.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
 #include "quorient/fdi/methods.hpp"
+#include "quorient/intake/frame_intake.hpp"
 #include "quorient/messages/meaning.hpp"
-#include "quorient/runtime/frame_intake.hpp"
-#include "quorient/runtime/intake_report.hpp"
 #include "require.hpp"
 #include "targets.hpp"
 
@@ -97,7 +96,7 @@ void frames(const std::uint8_t* data, std::size_t size)
     const auto axes = axis_counts[bytes.below(axis_counts.size())];
     const auto& method = fdi::methods()[bytes.below(static_cast<std::uint32_t>(fdi::methods().size()))].word;
     Lane lane{std::string{method}, algorithms[bytes.below(algorithms.size())]};
-    runtime::FrameIntake intake{unit, SensorKind::gyro};
+    intake::FrameIntake intake{unit, SensorKind::gyro};
     std::uint64_t epoch = 1, sequence = 0;
     std::int64_t now = 0;
     const auto describe = [&](bool well) {
@@ -129,7 +128,7 @@ void frames(const std::uint8_t* data, std::size_t size)
             if (accepted->new_description) lane.prepare(*intake.description());
             lane.handle(accepted->frame);
         }
-        REQUIRE(intake.complaints() == 0 || !runtime::words_for(intake.complaint()).empty());
+        REQUIRE(intake.complaints() == 0 || !intake::words_for(intake.complaint()).empty());
     }
 }
 

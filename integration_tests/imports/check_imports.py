@@ -26,7 +26,8 @@ ALLOWED = {
     "diagnosis": {"fdi", "geometry", "messages", "recording", "rotation"},
     "bus": {"messages", "settings"},
     "security": {"bus", "messages"},
-    "runtime": {"bus", "messages"},
+    "intake": {"messages"},
+    "runtime": {"bus", "intake", "messages"},
     "system": {"attitude", "bus", "calibration", "configuration", "fdi", "geometry", "messages", "rotation", "runtime", "security", "settings", "simulation", "voting"},
     "evaluation": {"attitude", "bus", "geometry", "messages", "rotation", "system"},
 }
@@ -52,7 +53,7 @@ INNER = {
     },
 }
 # What the algorithm rooms must not know: clocks, threads, files, loggers.
-PURE = {"rotation", "settings", "geometry", "fdi", "design", "attitude", "voting", "diagnosis"}
+PURE = {"rotation", "settings", "geometry", "fdi", "design", "attitude", "voting", "diagnosis", "intake"}
 IMPURE_HEADERS = re.compile(r"<(thread|mutex|condition_variable|future|chrono|fstream|filesystem|atomic|spdlog/.*)>")
 VENDOR = {
     "fastdds": re.compile(r"<(fastdds|fastrtps|fastcdr)/"),

@@ -4,7 +4,6 @@
 #include "quorient/messages/left_out.hpp"
 #include "quorient/messages/meaning.hpp"
 #include "quorient/messages/words.hpp"
-#include "quorient/runtime/intake_report.hpp"
 
 #include <fmt/format.h>
 #include <utility>
@@ -26,6 +25,7 @@ DetectorService::DetectorService(const system::DetectorProcess& settings, bus::B
       outlet_(shedding_, loop, [this](const FaultVerdict& verdict) { send(verdict); }),
       diagnosis_(bus, node_, settings.detector),
       intake_(settings.process.node.unit, settings.kind),
+      intake_report_(node_),
       events_(node_),
       adoption_(settings.verdict.warm_up_frames)
 {
@@ -61,7 +61,7 @@ void DetectorService::on_frame(const SensorFrame& frame)
     arrival_ns_ = node_.clock().steady_ns();
     if (!intake_.offer(frame, arrival_ns_)) return;
     handle_accepted();
-    runtime::report_intake(intake_, node_, told_rejected_, told_foreign_);
+    intake_report_.update(intake_);
 }
 
 void DetectorService::handle_accepted()

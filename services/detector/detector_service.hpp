@@ -3,7 +3,7 @@
 #include "adoption.hpp"
 #include "diagnosis_output.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
-#include "quorient/runtime/frame_intake.hpp"
+#include "quorient/runtime/intake_report.hpp"
 #include "quorient/runtime/node.hpp"
 #include "quorient/runtime/shedding.hpp"
 #include "quorient/system/system.hpp"
@@ -39,14 +39,13 @@ private:
     runtime::Outlet<FaultVerdict> outlet_;
     DiagnosisOutput diagnosis_;
     bus::Subscription<SensorFrame>* frames_ = nullptr;
-    runtime::FrameIntake intake_;
+    intake::FrameIntake intake_;
+    runtime::IntakeReport intake_report_;
     VerdictEvents events_;
     Adoption adoption_;
     std::optional<fdi::FaultMonitor> monitor_;  ///< from the first description that its method serves
     unsigned unmatched_looks_ = 0;              ///< at readiness, while nobody reads the verdicts
     std::int64_t arrival_ns_ = 0;
-    std::uint64_t told_rejected_ = 0;
-    std::uint64_t told_foreign_ = 0;
 };
 
 }  // namespace quorient::detector

@@ -2,7 +2,6 @@
 
 #include "quorient/geometry/sensor_cluster.hpp"
 #include "quorient/messages/meaning.hpp"
-#include "quorient/runtime/intake_report.hpp"
 
 #include <fmt/format.h>
 #include <utility>
@@ -26,6 +25,7 @@ IntegratorService::IntegratorService(const system::IntegratorProcess& settings, 
       outlet_(shedding_, loop, [this](const AttitudeState& attitude) { send(attitude); }),
       patience_timer_(loop.timer([this] { publish_pending(); })),
       intake_(settings.process.node.unit, settings.kind),
+      intake_report_(node_),
       events_(node_),
       resets_(node_)
 {
@@ -69,7 +69,7 @@ void IntegratorService::on_frame(const SensorFrame& frame)
     arrival_ns_ = node_.clock().steady_ns();
     if (!intake_.offer(frame, arrival_ns_)) return;
     handle_accepted();
-    runtime::report_intake(intake_, node_, told_rejected_, told_foreign_);
+    intake_report_.update(intake_);
 }
 
 void IntegratorService::handle_accepted()

@@ -3,7 +3,7 @@
 #include "attitude_events.hpp"
 #include "quorient/attitude/integrator.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"
-#include "quorient/runtime/frame_intake.hpp"
+#include "quorient/runtime/intake_report.hpp"
 #include "quorient/runtime/node.hpp"
 #include "quorient/runtime/shedding.hpp"
 #include "quorient/system/system.hpp"
@@ -40,7 +40,8 @@ private:
     bus::Subscription<SensorFrame>* frames_ = nullptr;
     bus::Subscription<FaultVerdict>* verdicts_ = nullptr;
     runtime::Timer& patience_timer_;
-    runtime::FrameIntake intake_;
+    intake::FrameIntake intake_;
+    runtime::IntakeReport intake_report_;
     AttitudeEvents events_;
     ResetOrders resets_;
     std::optional<attitude::Integrator> integrator_;  ///< from the first frame on
@@ -51,8 +52,6 @@ private:
     std::optional<Identity> pending_;                 ///< integrated, not yet published
     Stamps stamps_{};
     std::int64_t arrival_ns_ = 0;
-    std::uint64_t told_rejected_ = 0;
-    std::uint64_t told_foreign_ = 0;
 };
 
 }  // namespace quorient::integrator

@@ -6,66 +6,39 @@
 
 namespace quorient::runtime {
 
-std::string words_for(const FrameIntake::Complaint& complaint)
-{
-    using Fault = FrameIntake::Fault;
-    const auto& [fault, identity, got, expected, why] = complaint;
-    switch (fault) {
-        case Fault::none:
-            break;
-        case Fault::description:
-            return fmt::format("a description is refused: {}", why);
-        case Fault::axis_count:
-            return fmt::format("frame {} has {} axes, its description {}", identity.sequence, got, expected);
-        case Fault::interval:
-            return fmt::format("frame {}: its interval must be 1 ns to an hour", identity.sequence);
-        case Fault::sample_time:
-            return fmt::format(
-                "frame {}: its sample time is not after that of the frame before, or farther than 146 years from its clock's origin",
-                identity.sequence);
-        case Fault::unknown_revision:
-            return fmt::format("frames refer to revision {} of the description; of this epoch, {} is the newest here", got, expected);
-        case Fault::no_description:
-            return fmt::format("frames of epoch {} come without a description: publish it, latched, with the same epoch", identity.epoch);
-        case Fault::sequence_restart:
-            return fmt::format("sequence {} after {} in one epoch: who counts again must choose a new, larger epoch", got, expected);
-        case Fault::value:
-            return fmt::format("frame {}: axis {} is not finite, or beyond its stated range", identity.sequence, got);
-    }
-    return {};
-}
-
 namespace {
 
-EventCode code_of(FrameIntake::Fault fault)
+using Fault = intake::FrameIntake::Fault;
+
+EventCode code_of(Fault fault)
 {
-    const bool missing = fault == FrameIntake::Fault::unknown_revision || fault == FrameIntake::Fault::no_description;
+    const bool missing = fault == Fault::unknown_revision || fault == Fault::no_description;
     return missing ? EventCode::unknown_revision : EventCode::rejected_input;
 }
 
 }  // namespace
 
-void report_intake(const FrameIntake& intake, Node& node, std::uint64_t& told_rejected, std::uint64_t& told_foreign)
+void IntakeReport::update(const intake::FrameIntake& intake)
 {
     const auto& counters = intake.counters();
-    auto& status = node.status();
+    auto& status = node_.status();
     status.gaps = counters.gaps;
     status.duplicates = counters.duplicates;
     status.late = counters.late;
     status.foreign = counters.foreign;
     status.rejected = counters.rejected_frames + counters.rejected_values + counters.waiting_lost;
-    if (intake.complaints() != told_rejected) {
+    if (intake.complaints() != reported_complaints_) {
         const auto& complaint = intake.complaint();
-        const AxisMask axes = complaint.fault == FrameIntake::Fault::value ? axis_bit(complaint.got) : 0;
-        if (node.report_throttled(code_of(complaint.fault), Severity::warning_low, complaint.identity, axes,
-                                  fmt::format("{} ({} refused so far)", words_for(complaint), status.rejected)))
-            told_rejected = intake.complaints();
+        const AxisMask axes = complaint.fault == Fault::value ? axis_bit(complaint.got) : 0;
+        if (node_.report_throttled(code_of(complaint.fault), Severity::warning_low, complaint.identity, axes,
+                                   fmt::format("{} ({} refused so far)", intake::words_for(complaint), status.rejected)))
+            reported_complaints_ = intake.complaints();
     }
-    if (intake.foreign_epoch() != told_foreign) {
-        told_foreign = intake.foreign_epoch();
-        node.report(EventCode::foreign_publisher, Severity::warning_high, intake.newest(), 0,
-                    fmt::format("a second publisher of unit {} (epoch {}) is ignored while the first one sends", node.settings().unit,
-                                told_foreign));
+    if (intake.foreign_epoch() != reported_foreign_epoch_) {
+        reported_foreign_epoch_ = intake.foreign_epoch();
+        node_.report(EventCode::foreign_publisher, Severity::warning_high, intake.newest(), 0,
+                     fmt::format("a second publisher of unit {} (epoch {}) is ignored while the first one sends", node_.settings().unit,
+                                 reported_foreign_epoch_));
     }
 }
 

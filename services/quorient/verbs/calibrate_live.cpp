@@ -4,9 +4,9 @@
 #include "cli/progress.hpp"
 #include "correction.hpp"
 #include "quorient/bus/topics.hpp"
+#include "quorient/intake/frame_intake.hpp"
 #include "quorient/messages/meaning.hpp"
 #include "quorient/runtime/event_loop.hpp"
-#include "quorient/runtime/frame_intake.hpp"
 #include "quorient/runtime/signals.hpp"
 
 #include <fmt/format.h>
@@ -45,7 +45,7 @@ public:
     }
 
 private:
-    bool take(const runtime::FrameIntake::Accepted& accepted)
+    bool take(const intake::FrameIntake::Accepted& accepted)
     {
         if (accepted.new_description && !describe(*intake_.description())) return true;
         const SensorFrame& frame = accepted.frame;
@@ -58,8 +58,7 @@ private:
         for (std::size_t axis = 0; axis < frame.axis_count; ++axis)
             sample.rate(static_cast<Eigen::Index>(axis)) = correction_.raw(axis, frame.increment[axis], frame.interval_s) / frame.interval_s;
         sample.complete = frame.valid_mask == all_axes(frame.axis_count);
-        sample.follows = !accepted.new_epoch && frame.sequence == sequence_ + 1;
-        sequence_ = frame.sequence;
+        sample.follows = !accepted.new_epoch && accepted.missing_before == 0;
         ++statistics_.records;
         ++statistics_.frames;
         if (!sample.complete) ++statistics_.incomplete;
@@ -87,13 +86,12 @@ private:
     }
 
     std::optional<calibration::CalibratedCluster> calibration_;
-    runtime::FrameIntake intake_;
+    intake::FrameIntake intake_;
     sensor::Correction correction_ = sensor::Correction::none();
     std::optional<SampleStore> store_;
     ClusterDescription nominal_;
     recording::Statistics statistics_;
     double time_s_ = 0;
-    std::uint64_t sequence_ = 0;
     bool other_axes_ = false;
 };
 

@@ -1,17 +1,25 @@
 #pragma once
 
-#include "quorient/runtime/frame_intake.hpp"
+#include "quorient/intake/frame_intake.hpp"
 #include "quorient/runtime/node.hpp"
 
-#include <string>
+#include <cstdint>
 
 namespace quorient::runtime {
 
-/// What a publisher does wrong, in words for the person who wrote it.
-std::string words_for(const FrameIntake::Complaint& complaint);
+/// Copies the intake's counts into the service's status, and reports refused input and foreign publishers as they come. Every kind of
+/// mistake is reported once a second at most.
+class IntakeReport {
+public:
+    explicit IntakeReport(Node& node) : node_(node) {}
 
-/// Copies the intake's counts into the service's status and reports refused input and foreign publishers as they come.
-/// @param told_rejected, told_foreign  what was reported already; kept by the caller. Every kind of mistake is reported once a second at most.
-void report_intake(const FrameIntake& intake, Node& node, std::uint64_t& told_rejected, std::uint64_t& told_foreign);
+    /// Frames have been offered to the intake.
+    void update(const intake::FrameIntake& intake);
+
+private:
+    Node& node_;
+    std::uint64_t reported_complaints_ = 0;
+    std::uint64_t reported_foreign_epoch_ = 0;
+};
 
 }  // namespace quorient::runtime

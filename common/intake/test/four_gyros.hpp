@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace quorient::runtime::test {
+namespace quorient::intake::test {
 
 inline constexpr std::uint32_t unit = 7;
 inline constexpr std::int64_t interval_ns = 5'000'000;
@@ -38,4 +38,4 @@ inline SensorFrame frame(std::uint64_t epoch, std::uint64_t sequence)
     return made;
 }
 
-}  // namespace quorient::runtime::test
+}  // namespace quorient::intake::test

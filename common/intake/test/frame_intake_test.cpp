@@ -1,10 +1,10 @@
 #include "four_gyros.hpp"
-#include "quorient/runtime/frame_intake.hpp"
+#include "quorient/intake/frame_intake.hpp"
 
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace quorient::runtime {
+namespace quorient::intake {
 
 namespace {
 
@@ -184,6 +184,26 @@ TEST_F(Intake, does_not_take_a_foreign_description_for_its_own)
     EXPECT_EQ(intake.description()->epoch, 1U);
 }
 
+TEST_F(Intake, says_how_many_frames_were_lost_or_refused_before_one_that_it_lets_through)
+{
+    ASSERT_TRUE(passes(frame(1, 3)));
+    EXPECT_EQ(last.missing_before, 3U) << "the epoch began without us";
+    ASSERT_TRUE(passes(frame(1, 4)));
+    EXPECT_EQ(last.missing_before, 0U);
+    ASSERT_TRUE(passes(frame(1, 7)));
+    EXPECT_EQ(last.missing_before, 2U);
+    auto bad = frame(1, 8);
+    bad.axis_count = 5;
+    EXPECT_FALSE(passes(bad));
+    ASSERT_TRUE(passes(frame(1, 9)));
+    EXPECT_EQ(last.missing_before, 1U);
+    EXPECT_EQ(intake.counters().gaps, 2U) << "the refused frame did arrive";
+
+    intake.describe(ranged(2));
+    ASSERT_TRUE(passes(frame(2, 5), second_ns));
+    EXPECT_EQ(last.missing_before, 5U) << "of the new epoch alone";
+}
+
 }  // namespace
 
-}  // namespace quorient::runtime
+}  // namespace quorient::intake

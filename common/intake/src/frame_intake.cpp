@@ -1,15 +1,14 @@
-#include "quorient/runtime/frame_intake.hpp"
+#include "quorient/intake/frame_intake.hpp"
 
 #include "quorient/messages/meaning.hpp"
 #include "quorient/messages/restart.hpp"
 #include "quorient/messages/sample_time.hpp"
-#include "quorient/messages/stream_place.hpp"
 #include "quorient/messages/unit_kind.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace quorient::runtime {
+namespace quorient::intake {
 
 namespace {
 
@@ -142,14 +141,15 @@ const FrameIntake::Accepted* FrameIntake::next()
         waiting_begin_ = (waiting_begin_ + 1) % waiting_capacity;
         --waiting_count_;
         waiting_since_ns_ = last_arrival_ns_;
-        accepted_.new_epoch = frame.epoch != last_handled_epoch_;
+        accepted_.new_epoch = frame.epoch != handled_.next().epoch;
         if (!clean(accepted_.frame, *description)) {
             ++counters_.rejected_frames;
             continue;
         }
         accepted_.new_description = !current_ || current_->epoch != description->epoch || current_->revision != description->revision;
         if (accepted_.new_description) current_ = *description;
-        last_handled_epoch_ = accepted_.frame.epoch;
+        accepted_.missing_before = handled_.missing_before(identity_of(frame));
+        handled_ = StreamPlace::behind(identity_of(frame));
         last_sample_time_ns_ = accepted_.frame.sample_time_ns;
         ++counters_.accepted;
         return &accepted_;
@@ -182,4 +182,4 @@ bool FrameIntake::clean(SensorFrame& frame, const ClusterDescription& descriptio
     return true;
 }
 
-}  // namespace quorient::runtime
+}  // namespace quorient::intake

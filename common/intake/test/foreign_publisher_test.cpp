@@ -1,12 +1,12 @@
 // What a publisher that is not ours may do wrong is named, once, in words that show its author what to change.
 
 #include "four_gyros.hpp"
-#include "quorient/runtime/intake_report.hpp"
+#include "quorient/intake/frame_intake.hpp"
 
 #include <gmock/gmock.h>
 #include <limits>
 
-namespace quorient::runtime {
+namespace quorient::intake {
 
 namespace {
 
@@ -141,4 +141,4 @@ TEST_F(ForeignPublisher, whose_description_is_none_is_told_what_is_wrong_with_it
 
 }  // namespace
 
-}  // namespace quorient::runtime
+}  // namespace quorient::intake

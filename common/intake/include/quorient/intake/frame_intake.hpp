@@ -4,12 +4,14 @@
 #include "quorient/messages/codes.hpp"
 #include "quorient/messages/identity.hpp"
 #include "quorient/messages/sensor_frame.hpp"
+#include "quorient/messages/stream_place.hpp"
 
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 
-namespace quorient::runtime {
+namespace quorient::intake {
 
 /// The door of every consumer of frames: lets through what is new, of the right publisher, described and finite; counts the rest.
 ///
@@ -53,8 +55,9 @@ public:
 
     struct Accepted {
         SensorFrame frame;
-        bool new_epoch = false;        ///< the first frame of its epoch
-        bool new_description = false;  ///< description() changed with this frame
+        std::uint64_t missing_before = 0;  ///< lost or refused since the frame accepted before; in a new epoch, since its sequence 0
+        bool new_epoch = false;            ///< the first frame of its epoch
+        bool new_description = false;      ///< description() changed with this frame
     };
 
     FrameIntake(std::uint32_t unit, SensorKind kind) : unit_(unit), kind_(kind) {}
@@ -111,7 +114,7 @@ private:
     bool started_ = false;
     std::int64_t last_arrival_ns_ = 0;
     std::int64_t last_sample_time_ns_ = 0;
-    std::uint64_t last_handled_epoch_ = 0;
+    StreamPlace handled_;  ///< behind the frame accepted last
     std::uint64_t foreign_epoch_ = 0;
     double interval_s_ = 0;
     Complaint complaint_;
@@ -120,4 +123,7 @@ private:
     std::uint32_t older_in_a_row_ = 0;
 };
 
-}  // namespace quorient::runtime
+/// What a publisher does wrong, in words for the person who wrote it.
+std::string words_for(const FrameIntake::Complaint& complaint);
+
+}  // namespace quorient::intake
