@@ -4,7 +4,7 @@
 #include "field_log.hpp"
 #include "monte_carlo.hpp"
 
-#include "quorient/fdi/field_detector.hpp"
+#include "field/field_detector.hpp"
 
 #include <span>
 #include <vector>

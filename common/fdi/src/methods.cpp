@@ -1,7 +1,7 @@
 #include "quorient/fdi/methods.hpp"
 
 #include "arrays/accumulating_detector.hpp"
-#include "quorient/fdi/field_detector.hpp"
+#include "field/field_detector.hpp"
 #include "quorient/fdi/noise.hpp"
 #include "quorient/geometry/redundancy.hpp"
 #include "four_axes/extrapolation_detector.hpp"

@@ -1,6 +1,6 @@
 #include "arrays/accumulating_detector.hpp"
 
-#include "quorient/fdi/field_detector.hpp"
+#include "field/field_detector.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
 #include "quorient/fdi/methods.hpp"
 #include "quorient/geometry/layouts.hpp"

@@ -1,4 +1,4 @@
-#include "quorient/fdi/field_detector.hpp"
+#include "field/field_detector.hpp"
 
 #include "field_scene.hpp"
 #include "quorient/fdi/methods.hpp"

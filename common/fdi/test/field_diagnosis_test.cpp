@@ -1,6 +1,6 @@
 // Kind and size of a fault, against the one that was put in.
 
-#include "quorient/fdi/field_detector.hpp"
+#include "field/field_detector.hpp"
 
 #include "field_scene.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "field_scene.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
-#include "quorient/fdi/field_detector.hpp"
+#include "field/field_detector.hpp"
 #include "quorient/messages/meaning.hpp"
 
 #include <gtest/gtest.h>

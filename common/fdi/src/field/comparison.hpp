@@ -5,7 +5,7 @@
 #include "field/low_pass.hpp"
 #include "field/noise_scale.hpp"
 #include "field/window_sums.hpp"
-#include "quorient/fdi/field_detector.hpp"
+#include "field/field_detector.hpp"
 
 #include <optional>
 

@@ -1,4 +1,4 @@
-#include "quorient/fdi/field_detector.hpp"
+#include "field/field_detector.hpp"
 
 #include "field/state.hpp"
 #include "field/state_rules.hpp"
@@ -32,42 +32,7 @@ tl::expected<std::unique_ptr<FieldDetector>, std::string> FieldDetector::make(co
     auto normal = normalised(cluster, figures_of(settings.sensor_class).usual_range_rad_s);
     const auto array = InstrumentArray::make(normal, geometry::AxisVector::Ones(normal.axes.rows()));
     if (!array) return tl::unexpected("field: " + array.error());
-    auto state = std::make_unique<State>(std::move(normal), *array, settings, rules);
-    return std::unique_ptr<FieldDetector>(new FieldDetector(std::move(state)));
-}
-
-FieldDetector::FieldDetector(std::unique_ptr<State> state) : state_(std::move(state)) {}
-
-FieldDetector::~FieldDetector() = default;
-
-void FieldDetector::assess(const Measurement& measurement, Assessment& assessment)
-{
-    state_->assess(measurement, assessment);
-}
-
-void FieldDetector::exclude(AxisMask excluded)
-{
-    state_->exclude(excluded);
-}
-
-unsigned FieldDetector::detectable_remaining() const
-{
-    return state_->detectable_remaining();
-}
-
-std::string_view FieldDetector::reason() const
-{
-    return state_->reason();
-}
-
-void FieldDetector::reset()
-{
-    state_->reset();
-}
-
-double FieldDetector::largest_lasting() const
-{
-    return state_->largest_lasting();
+    return std::make_unique<State>(std::move(normal), *array, settings, rules);
 }
 
 }  // namespace quorient::fdi

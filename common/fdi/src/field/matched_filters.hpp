@@ -3,7 +3,7 @@
 #include "field/compared_frames.hpp"
 #include "field/learning.hpp"
 #include "field/suspicions.hpp"
-#include "quorient/fdi/field_detector.hpp"
+#include "field/field_detector.hpp"
 
 namespace quorient::fdi::field {
 

@@ -6,26 +6,26 @@
 #include "field/diagnostics.hpp"
 #include "field/disagreement.hpp"
 #include "field/fast_lane.hpp"
+#include "field/field_detector.hpp"
 #include "field/framing.hpp"
 #include "field/matched_filters.hpp"
 #include "field/presence.hpp"
 #include "field/saturation.hpp"
 #include "field/start.hpp"
-#include "quorient/fdi/field_detector.hpp"
 
 namespace quorient::fdi {
 
 /// The order of things in one frame; each of them is a class of its own.
-class FieldDetector::State {
+class FieldDetector::State final : public FieldDetector {
 public:
     State(geometry::SensorCluster cluster, const InstrumentArray& array, const DetectorSettings& settings, const FieldRules& rules);
 
-    void assess(const Measurement& measurement, Assessment& assessment);
-    void exclude(AxisMask excluded);
-    unsigned detectable_remaining() const;
-    std::string_view reason() const;
-    void reset();
-    double largest_lasting() const { return largest_lasting_; }
+    void assess(const Measurement& measurement, Assessment& assessment) override;
+    void exclude(AxisMask excluded) override;
+    unsigned detectable_remaining() const override;
+    std::string_view reason() const override;
+    void reset() override;
+    double largest_lasting() const override { return largest_lasting_; }
 
 private:
     using InstrumentSet = field::InstrumentSet;

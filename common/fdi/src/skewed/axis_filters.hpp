@@ -2,7 +2,7 @@
 
 #include "field/compared_frames.hpp"
 #include "field/suspicions.hpp"
-#include "quorient/fdi/field_detector.hpp"
+#include "field/field_detector.hpp"
 #include "skewed/axis_sums.hpp"
 
 namespace quorient::fdi::skewed {

@@ -18,42 +18,7 @@ tl::expected<std::unique_ptr<SkewedDetector>, std::string> SkewedDetector::make(
     geometry::SensorCluster normal = cluster;
     for (double& range : normal.range)
         if (!(range > 0)) range = figures_of(settings.sensor_class).usual_range_rad_s;
-    auto state = std::make_unique<State>(std::move(normal), settings, rules);
-    return std::unique_ptr<SkewedDetector>(new SkewedDetector(std::move(state)));
-}
-
-SkewedDetector::SkewedDetector(std::unique_ptr<State> state) : state_(std::move(state)) {}
-
-SkewedDetector::~SkewedDetector() = default;
-
-void SkewedDetector::assess(const Measurement& measurement, Assessment& assessment)
-{
-    state_->assess(measurement, assessment);
-}
-
-void SkewedDetector::exclude(AxisMask excluded)
-{
-    state_->exclude(excluded);
-}
-
-unsigned SkewedDetector::detectable_remaining() const
-{
-    return state_->detectable_remaining();
-}
-
-std::string_view SkewedDetector::reason() const
-{
-    return state_->reason();
-}
-
-void SkewedDetector::reset()
-{
-    state_->reset();
-}
-
-double SkewedDetector::largest_lasting() const
-{
-    return state_->largest_lasting();
+    return std::make_unique<State>(std::move(normal), settings, rules);
 }
 
 }  // namespace quorient::fdi

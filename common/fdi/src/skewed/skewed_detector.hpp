@@ -1,6 +1,6 @@
 #pragma once
 
-#include "quorient/fdi/field_detector.hpp"
+#include "field/field_detector.hpp"
 
 namespace quorient::fdi {
 
@@ -13,7 +13,7 @@ namespace quorient::fdi {
 /// - ambiguous: several axes explain a lasting contradiction alike; with four axes left, all of them;
 /// - warming_up: the first second, and while fewer than four axes deliver data.
 /// statistic = the largest certainty, threshold 1. Otherwise as FieldDetector.
-class SkewedDetector final : public Detector {
+class SkewedDetector : public Detector {
 public:
     static constexpr std::size_t least_axes = 5;
 
@@ -21,23 +21,12 @@ public:
     /// @returns why not: fewer than five axes, an unknown interval, a mount of separate boxes.
     static tl::expected<std::unique_ptr<SkewedDetector>, std::string> make(const DetectorSettings& settings, const geometry::SensorCluster& cluster,
                                                                           const FieldRules& rules = {});
-    ~SkewedDetector() override;
-
-    void assess(const Measurement& measurement, Assessment& assessment) override;
-    void exclude(AxisMask excluded) override;
-    unsigned detectable_remaining() const override;
-    std::string_view reason() const override;
-    void reset() override;
 
     /// The largest certainty of any lasting contradiction so far: how close sound axes came to 1.
-    double largest_lasting() const;
+    virtual double largest_lasting() const = 0;
 
 private:
     class State;
-
-    explicit SkewedDetector(std::unique_ptr<State> state);
-
-    std::unique_ptr<State> state_;
 };
 
 }  // namespace quorient::fdi

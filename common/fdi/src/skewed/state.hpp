@@ -14,16 +14,16 @@
 namespace quorient::fdi {
 
 /// The order of things in one frame, as FieldDetector::State.
-class SkewedDetector::State {
+class SkewedDetector::State final : public SkewedDetector {
 public:
     State(geometry::SensorCluster cluster, const DetectorSettings& settings, const FieldRules& rules);
 
-    void assess(const Measurement& measurement, Assessment& assessment);
-    void exclude(AxisMask excluded);
-    unsigned detectable_remaining() const;
-    std::string_view reason() const;
-    void reset();
-    double largest_lasting() const { return largest_lasting_; }
+    void assess(const Measurement& measurement, Assessment& assessment) override;
+    void exclude(AxisMask excluded) override;
+    unsigned detectable_remaining() const override;
+    std::string_view reason() const override;
+    void reset() override;
+    double largest_lasting() const override { return largest_lasting_; }
 
 private:
     using AxisSet = skewed::AxisSet;

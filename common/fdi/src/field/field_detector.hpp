@@ -38,30 +38,19 @@ struct FieldRules {
 ///
 /// Instruments without data are left out while they have none. Each frame waits for its successor: one frame of delay (up to 10 ms more where
 /// the sampling rate exceeds 125 Hz, see Framing). Nothing is allocated per frame.
-class FieldDetector final : public Detector {
+class FieldDetector : public Detector {
 public:
     /// Uses settings.sensor_class, mount, calibrated, delay_class_s.
     /// @returns why not: fewer than two instruments, an instrument that does not span space, an unknown interval.
     static tl::expected<std::unique_ptr<FieldDetector>, std::string> make(const DetectorSettings& settings,
                                                                          const geometry::SensorCluster& cluster,
                                                                          const FieldRules& rules = {});
-    ~FieldDetector() override;
-
-    void assess(const Measurement& measurement, Assessment& assessment) override;
-    void exclude(AxisMask excluded) override;
-    unsigned detectable_remaining() const override;
-    std::string_view reason() const override;
-    void reset() override;
 
     /// The largest certainty of any lasting contradiction so far: how close sound instruments came to 1.
-    double largest_lasting() const;
+    virtual double largest_lasting() const = 0;
 
 private:
     class State;
-
-    explicit FieldDetector(std::unique_ptr<State> state);
-
-    std::unique_ptr<State> state_;
 };
 
 }  // namespace quorient::fdi
