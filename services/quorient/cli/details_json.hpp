@@ -1,7 +1,7 @@
 #pragma once
 
 #include "json_output.hpp"
-#include "quorient/fdi/detail.hpp"
+#include "quorient/fdi/detector.hpp"
 
 namespace quorient::cli {
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "quorient/fdi/detail.hpp"
 #include "quorient/messages/codes.hpp"
 #include "quorient/messages/identity.hpp"
 #include "quorient/messages/limits.hpp"
@@ -12,7 +11,9 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 namespace quorient::fdi {
@@ -88,6 +89,25 @@ struct Assessment {
 struct Expectation {
     double value = 0;     ///< what the axis should have read [unit of the measurement]
     bool agrees = false;  ///< with the axis trusted again this frame, and as many before as the method looks at, would be healthy
+};
+
+/// A set of axes and what it is worth to the method.
+struct ScoredSet {
+    AxisMask axes = 0;
+    double score = 0;
+};
+
+/// A figure of a method's own about its newest frame, for tools that show it. What does not exist is NaN, an empty string or `std::monostate`.
+struct Detail {
+    using Interval = std::array<double, 2>;
+    struct Axes {
+        AxisMask mask = 0;
+    };
+    using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string, Axes, Interval, std::vector<bool>, std::vector<double>,
+                               std::vector<std::string>, std::vector<Axes>, std::vector<Interval>, std::vector<ScoredSet>>;
+
+    std::string_view name;
+    Value value;
 };
 
 /// One detection method on one cluster. Frames come in order; nothing is allocated per frame.
