@@ -2,7 +2,7 @@
 
 #include "detection_trial.hpp"
 #include "monte_carlo.hpp"
-#include "quorient/fdi/motion_noise.hpp"
+#include "quorient/fdi/settings.hpp"
 
 #include <span>
 #include <string>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "quorient/calibration/sample.hpp"
-#include "quorient/fdi/motion_noise.hpp"
+#include "quorient/fdi/settings.hpp"
 #include "quorient/calibration/held_out.hpp"
 
 #include <vector>

@@ -33,7 +33,7 @@ struct RecordedArray {
     std::size_t calibrated_by = 0;  ///< place of the other one
     geometry::SensorCluster cluster;
     std::optional<double> motion_noise{};          ///< fdi::DetectorSettings::motion_noise, as the other recording shows it
-    std::optional<fdi::GatedNoise> gated_noise{};  ///< likewise
+    std::optional<fdi::MotionNoise> gated_noise{};  ///< likewise
     std::vector<SensorFrame> frames;
     std::vector<calibration::Segment> rest;
     calibration::Segment motion;  ///< the longest stretch without rest

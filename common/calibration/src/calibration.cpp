@@ -288,8 +288,7 @@ tl::expected<void, std::string> fit_motion(Samples samples, const geometry::Sens
     const RateOf corrected = [&](const Sample& sample) -> AxisVector { return unbiased(sample).cwiseQuotient(fit->gain); };
     const AxisVector deviation = of_axes(result.at_rest.deviation_rad_s, sound).cwiseQuotient(fit->gain);
     result.motion = motion_figures(samples, corrected, usable, fit->axes, deviation);
-    result.cluster.jitter_along_s = result.motion->noise.along_s;
-    result.cluster.jitter_across_s = result.motion->noise.across_s;
+    result.cluster.jitter = result.motion->noise;
     return {};
 }
 

@@ -30,7 +30,7 @@ std::string triple(const std::array<double, 3>& values)
 
 std::string noise_text(const CalibratedCluster& cluster)
 {
-    std::string text = fmt::format("{{along_s: {:.17g}, across_s: {:.17g}, level: {:.17g}", cluster.jitter_along_s, cluster.jitter_across_s,
+    std::string text = fmt::format("{{along_s: {:.17g}, across_s: {:.17g}, level: {:.17g}", cluster.jitter.along_s, cluster.jitter.across_s,
                                    cluster.motion_level);
     if (const auto& gated = cluster.gated)
         text += fmt::format(", gated: {{along_s: {:.17g}, across_s: {:.17g}, axes: {:.17g}, rate: {:.17g}}}", gated->jitter_along_s,
@@ -78,7 +78,7 @@ struct NoiseSection {
     double along_s = 0;
     double across_s = 0;
     double level = 0;
-    std::optional<fdi::GatedNoise> gated;
+    std::optional<fdi::MotionNoise> gated;
 };
 
 struct ClusterSection {
@@ -112,12 +112,12 @@ const Table<AxisSection>& axis_table()
 
 const Table<NoiseSection>& noise_table()
 {
-    using fdi::GatedNoise;
-    static constexpr std::array<settings::Setting<GatedNoise>, 4> gated{{
-        {"along_s", &GatedNoise::jitter_along_s, "s", not_negative, "Sampling jitter along the rate."},
-        {"across_s", &GatedNoise::jitter_across_s, "s", not_negative, "Sampling jitter across it."},
-        {"axes", &GatedNoise::axes_error, "", not_negative, "Error of the axes."},
-        {"rate", &GatedNoise::rate_error, "", not_negative, "Error in proportion to the rate."},
+    using fdi::MotionNoise;
+    static constexpr std::array<settings::Setting<MotionNoise>, 4> gated{{
+        {"along_s", &MotionNoise::jitter_along_s, "s", not_negative, "Sampling jitter along the rate."},
+        {"across_s", &MotionNoise::jitter_across_s, "s", not_negative, "Sampling jitter across it."},
+        {"axes", &MotionNoise::axes_error, "", not_negative, "Error of the axes."},
+        {"rate", &MotionNoise::rate_error, "", not_negative, "Error in proportion to the rate."},
     }};
     static constexpr std::array<settings::Setting<NoiseSection>, 3> figures{{
         {"along_s", &NoiseSection::along_s, "s", not_negative, "Sampling jitter along the rate."},
@@ -125,7 +125,7 @@ const Table<NoiseSection>& noise_table()
         {"level", &NoiseSection::level, "", not_negative, "Times what is usual; 0 = not known."},
     }};
     static const auto rows = record<NoiseSection>(figures);
-    static const Table<GatedNoise> gated_table{"Terms of the gated sums.", {required(record<GatedNoise>(gated))}};
+    static const Table<MotionNoise> gated_table{"Terms of the gated sums.", {required(record<MotionNoise>(gated))}};
     static const Table<NoiseSection> table{
         "Errors of a moving array.",
         {required(chosen(rows, {"along_s", "across_s"})), chosen(rows, {"level"}),
@@ -184,8 +184,8 @@ CalibratedCluster cluster_of(const ClusterSection& section)
     set_name(description.name, section.name);
     cluster.origin = section.origin;
     if (const auto& noise = section.motion_noise) {
-        cluster.jitter_along_s = noise->along_s;
-        cluster.jitter_across_s = noise->across_s;
+        cluster.jitter.along_s = noise->along_s;
+        cluster.jitter.across_s = noise->across_s;
         cluster.motion_level = noise->level;
         cluster.gated = noise->gated;
     }

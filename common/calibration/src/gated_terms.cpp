@@ -33,7 +33,7 @@ constexpr TermSearchSettings search{.close_enough = 0.015, .level_rounds = 8, .s
 using Place = TermPlace<4>;
 using Logs = decltype(Place::logs);
 
-fdi::MotionNoise noise_of(const Logs& logs, double bias_floor_rad_s)
+fdi::MotionNoise noise_of(const Logs& logs, double bias_floor_rad_s = 0)
 {
     return {.jitter_along_s = std::exp(logs[0]),
             .jitter_across_s = std::exp(logs[1]),
@@ -81,7 +81,7 @@ public:
     }
 
     /// @returns nothing where no length of windows has enough of them.
-    std::optional<fdi::GatedNoise> result()
+    std::optional<fdi::MotionNoise> result()
     {
         const auto usual = fdi::usual_motion_noise(halves_.front().cluster);
         const Place start =
@@ -89,10 +89,7 @@ public:
         if (!std::isfinite(start.excess)) return std::nullopt;
         const auto look = [this](const Logs& logs) { return seen(logs); };
         const Logs logs = TermSearch<4, decltype(look)>(start, look, search).result();
-        return fdi::GatedNoise{.jitter_along_s = std::exp(logs[0]),
-                               .jitter_across_s = std::exp(logs[1]),
-                               .axes_error = std::exp(logs[2]),
-                               .rate_error = std::exp(logs[3])};
+        return noise_of(logs);
     }
 
 private:
@@ -171,7 +168,7 @@ private:
 
 }  // namespace
 
-std::optional<fdi::GatedNoise> gated_terms(Samples samples, const ClusterDescription& nominal, const Calibration& calibration,
+std::optional<fdi::MotionNoise> gated_terms(Samples samples, const ClusterDescription& nominal, const Calibration& calibration,
                                       const RestSettings& settings)
 {
     if (!calibration.motion || calibration.motion->noise.samples == 0 || !calibration.outside.empty()) return std::nullopt;

@@ -64,8 +64,9 @@ void raise(CalibratedCluster& cluster)
 {
     cluster.motion_level = std::min(highest_level, std::max(1.0, cluster.motion_level) * raised_by);
     if (!cluster.gated) return;
-    for (double fdi::GatedNoise::*term : {&fdi::GatedNoise::jitter_along_s, &fdi::GatedNoise::jitter_across_s, &fdi::GatedNoise::axes_error,
-                                          &fdi::GatedNoise::rate_error})
+    using fdi::MotionNoise;
+    for (double MotionNoise::*term :
+         {&MotionNoise::jitter_along_s, &MotionNoise::jitter_across_s, &MotionNoise::axes_error, &MotionNoise::rate_error})
         (*cluster.gated).*term *= raised_by;
 }
 

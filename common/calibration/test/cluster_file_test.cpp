@@ -24,7 +24,7 @@ CalibratedCluster some_cluster()
         cluster.description.sigma[axis] = 1e-5 / 3;
         cluster.gain[axis] = truth.gain(row);
     }
-    cluster.jitter_along_s = 1.0 / 3e3;
+    cluster.jitter.along_s = 1.0 / 3e3;
     cluster.motion_level = 4.0 / 3;
     cluster.gated = {.jitter_along_s = 1.0 / 7e3, .jitter_across_s = 1.0 / 9e3, .axes_error = 1e-3 / 3, .rate_error = 1e-4 / 3};
     cluster.origin = "log \"one\".bin";
@@ -50,7 +50,7 @@ TEST(ClusterFile, reads_back_bit_for_bit)
     EXPECT_EQ(read->description.instrument, cluster.description.instrument);
     EXPECT_EQ(read->description.instrument_count, 3);
     EXPECT_EQ(read->gain, cluster.gain);
-    EXPECT_EQ(read->jitter_along_s, cluster.jitter_along_s);
+    EXPECT_EQ(read->jitter.along_s, cluster.jitter.along_s);
     EXPECT_EQ(read->motion_level, cluster.motion_level);
     ASSERT_TRUE(read->gated);
     EXPECT_EQ(read->gated->jitter_across_s, cluster.gated->jitter_across_s);

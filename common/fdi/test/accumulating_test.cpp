@@ -333,10 +333,10 @@ TEST(Accumulating, expects_as_much_of_the_motion_as_it_is_told)
     EXPECT_EQ(blamed_of_a_wild_array(8, 60), 0b000111000U);
 }
 
-constexpr GatedNoise mostly_calm{.jitter_along_s = 0.12e-3, .jitter_across_s = 0.05e-3};
+constexpr MotionNoise mostly_calm{.jitter_along_s = 0.12e-3, .jitter_across_s = 0.05e-3};
 
 /// Frames from the onset of a fault in violent motion, with outliers of 2.5 ms, until its instrument is isolated; `never` if it is not.
-std::uint64_t found_among_outliers(std::uint64_t seed, std::optional<GatedNoise> gated_noise, double bias_deg_s, std::uint64_t frames)
+std::uint64_t found_among_outliers(std::uint64_t seed, std::optional<MotionNoise> gated_noise, double bias_deg_s, std::uint64_t frames)
 {
     constexpr std::uint64_t onset = 600;
     Array array(seed);
@@ -385,7 +385,7 @@ TEST(Accumulating, refuses_what_it_cannot_serve_and_says_why)
     cluster.sigma.setZero();
     EXPECT_THAT(refusal({}, cluster), ::testing::HasSubstr("sigma"));
     EXPECT_FALSE(AccumulatingDetector::make({}, Array(1).cluster, {.jitter_along_s = -1}));
-    EXPECT_FALSE(AccumulatingDetector::make({.gated_noise = GatedNoise{.axes_error = -1}}, Array(1).cluster));
+    EXPECT_FALSE(AccumulatingDetector::make({.gated_noise = MotionNoise{.axes_error = -1}}, Array(1).cluster));
     EXPECT_THAT(refusal({.motion_noise = -1}, cluster), ::testing::HasSubstr("motion_noise"));
 }
 

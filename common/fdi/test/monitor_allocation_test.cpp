@@ -44,7 +44,7 @@ TEST(FaultMonitor, allocates_nothing_per_frame)
                                            .tolerance = 1e-5,
                                            .bound = 1e-5,
                                            .threshold = 1e-4,
-                                           .gated_noise = GatedNoise{.jitter_along_s = 1e-6}},
+                                           .gated_noise = MotionNoise{.jitter_along_s = 1e-6}},
                                           {.readmit_after_s = 0.5}, cluster);
         ASSERT_TRUE(monitor) << monitor.error();
         AxisMask isolated = 0;

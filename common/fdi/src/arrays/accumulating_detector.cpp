@@ -47,13 +47,11 @@ bool is_good(const MotionNoise& noise)
 }
 
 /// No outliers; the constant error that calibration left is that of the other sums.
-MotionNoise motion_of(const GatedNoise& gated, const MotionNoise& other)
+MotionNoise without_outliers(MotionNoise gated, const MotionNoise& other)
 {
-    return {.jitter_along_s = gated.jitter_along_s,
-            .jitter_across_s = gated.jitter_across_s,
-            .axes_error = gated.axes_error,
-            .rate_error = gated.rate_error,
-            .bias_floor_rad_s = other.bias_floor_rad_s};
+    gated.roughness_s = 0;
+    gated.bias_floor_rad_s = other.bias_floor_rad_s;
+    return gated;
 }
 
 }  // namespace
@@ -75,7 +73,7 @@ tl::expected<std::unique_ptr<AccumulatingDetector>, std::string> AccumulatingDet
     if (!sigma) return tl::unexpected(sigma.error());
     if (!(cluster.interval_s > 0))
         return tl::unexpected(std::string("accumulating: false alarms are counted per hour, so the cluster's interval_s must be known"));
-    const MotionNoise calmer = settings.gated_noise ? motion_of(*settings.gated_noise, motion) : MotionNoise{};
+    const MotionNoise calmer = settings.gated_noise ? without_outliers(*settings.gated_noise, motion) : MotionNoise{};
     if (!is_good(motion) || !is_good(calmer))
         return tl::unexpected(std::string("accumulating: the terms of the motion noise must be finite and at least 0"));
     auto array = InstrumentArray::make(cluster, sigma->cwiseAbs2());

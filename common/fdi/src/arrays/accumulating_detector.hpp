@@ -2,7 +2,6 @@
 
 #include "quorient/fdi/array_sums.hpp"
 #include "quorient/fdi/detector.hpp"
-#include "quorient/fdi/motion_noise.hpp"
 #include "quorient/fdi/settings.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"
 

@@ -1,4 +1,4 @@
-#include "quorient/fdi/motion_noise.hpp"
+#include "quorient/fdi/array_sums.hpp"
 
 #include <cmath>
 

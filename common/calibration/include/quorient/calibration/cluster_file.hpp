@@ -1,5 +1,6 @@
 #pragma once
 
+#include "quorient/calibration/motion_noise.hpp"
 #include "quorient/fdi/settings.hpp"
 #include "quorient/messages/cluster_description.hpp"
 #include "quorient/messages/limits.hpp"
@@ -13,14 +14,13 @@ namespace quorient::calibration {
 
 /// A cluster as calibrated. Raw measurements are corrected by increment = (raw - bias * interval) / gain.
 struct CalibratedCluster {
-    ClusterDescription description;  ///< axes, bias, sigma, range … of the corrected increments
+    ClusterDescription description;           ///< axes, bias, sigma, range … of the corrected increments
     std::array<double, max_axes> gain{};
     std::array<double, max_axes> bias_spread_rad_s{};
-    double jitter_along_s = 0;  ///< as SamplingJitter
-    double jitter_across_s = 0;
-    double motion_level = 0;            ///< times the motion noise that is usual for arrays; 0 = not known
-    std::optional<fdi::GatedNoise> gated{};  ///< nothing where the recording does not show it
-    std::string origin;                 ///< which log it comes from
+    SamplingJitter jitter;
+    double motion_level = 0;                  ///< times the motion noise that is usual for arrays; 0 = not known
+    std::optional<fdi::MotionNoise> gated{};  ///< nothing where the recording does not show it
+    std::string origin;                       ///< which log it comes from
 };
 
 /// The YAML text of a cluster file; doubles read back bit-identical.

@@ -14,7 +14,7 @@ namespace quorient::calibration {
 /// [docs/methods/calibration.md]
 /// @returns nothing where the recording never turned violently enough, an axis was set aside, half of its motion is not enough for a calibration, or the detector
 /// does not accept the array.
-std::optional<fdi::GatedNoise> gated_terms(Samples samples, const ClusterDescription& nominal,
+std::optional<fdi::MotionNoise> gated_terms(Samples samples, const ClusterDescription& nominal,
                                                    const Calibration& calibration,
                                                    const RestSettings& settings = {});
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "quorient/fdi/instrument_array.hpp"
-#include "quorient/fdi/motion_noise.hpp"
+#include "quorient/fdi/settings.hpp"
 
 #include <Eigen/Core>
 #include <array>
@@ -9,6 +9,11 @@
 #include <vector>
 
 namespace quorient::fdi {
+
+/// What to expect of an array that was calibrated: fractions of its interval and of its own noise, as the two MIMU4444 recordings
+/// show them (common/fdi/README.md has the figures). Negligible beside the noise where the motion is gentle.
+/// @param level  multiplies all that moving brings in: 1 for arrays like those, else what a recording of the array shows.
+MotionNoise usual_motion_noise(const geometry::SensorCluster& cluster, double level = 1);
 
 /// What every instrument of an array has measured over windows of past frames, and how well they must agree.
 ///

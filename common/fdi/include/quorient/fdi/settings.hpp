@@ -9,12 +9,14 @@
 
 namespace quorient::fdi {
 
-/// What a moving array shows beyond its noise at rest in all but its worst frames: the terms of MotionNoise of the same names.
-struct GatedNoise {
-    double jitter_along_s = 0;
-    double jitter_across_s = 0;
-    double axes_error = 0;
-    double rate_error = 0;
+/// How wrong the axes of a real array are beyond their noise at rest. Each term is one standard deviation.
+struct MotionNoise {
+    double jitter_along_s = 0;    ///< times |d omega/dt|: each instrument's sampling instants wander; along d omega/dt …
+    double jitter_across_s = 0;   ///< … and across it; both independent between frames and between instruments
+    double roughness_s = 0;       ///< times the lately largest |d omega/dt|: outliers, which a few frames of a window dominate
+    double axes_error = 0;        ///< times the rotation: misalignment and scale that calibration left; what turns back is taken back
+    double rate_error = 0;        ///< times the angle turned through, whichever way: errors of another law (asymmetry, rate squared)
+    double bias_floor_rad_s = 0;  ///< constant error of each axis that calibration left
 };
 
 /// Everything a user can set about detection; what is absent takes the method's default. What each means stands in detector_record().
@@ -31,7 +33,7 @@ struct DetectorSettings {
     std::optional<double> margin{};
     std::optional<double> doubt{};
     std::optional<double> motion_noise{};
-    std::optional<GatedNoise> gated_noise{};  ///< accumulating: of the gated sums; absent: there are none
+    std::optional<MotionNoise> gated_noise{};  ///< accumulating: of the gated sums, without outliers and bias floor; absent: there are none
     SensorClass sensor_class = SensorClass::consumer;
     Mount mount = Mount::board;
     std::optional<double> delay_class_s{};
