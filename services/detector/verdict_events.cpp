@@ -63,7 +63,7 @@ void VerdictEvents::report_isolations(const FaultVerdict& verdict, const Cluster
                                  verdict.excluded_from.earliest(isolated), reason_of(verdict, description, isolated, diagnosis)));
         if (verdict.detectable_remaining == 0)
             node_.report(EventCode::redundancy_exhausted, Severity::warning_high, identity, verdict.working_mask,
-                         "redundancy is used up: a further fault cannot be told");
+                         "redundancy is used up: no further fault can be detected");
     }
     const AxisMask readmitted = last_.isolated_mask & ~verdict.isolated_mask;
     if (readmitted != 0)

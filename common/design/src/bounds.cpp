@@ -76,7 +76,7 @@ Checked check_failures(const Brief& brief)
     if (brief.fails_by_instrument()) {
         if (brief.units() >= k + 2) return {};
         return refused("failures",
-                       fmt::format("{} failures of {} instruments: with two left a difference does not tell which is wrong; {} are needed",
+                       fmt::format("{} failures of {} instruments: with two left a difference does not show which is wrong; {} are needed",
                                    k, brief.units(), k + 2));
     }
     if (n < k + 3)

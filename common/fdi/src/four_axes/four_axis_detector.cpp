@@ -41,7 +41,7 @@ auto FourAxisDetector::geometry_of(const DetectorSettings& settings, const geome
     made.parity_quantum = made.parity_vector.cwiseAbs().dot(Eigen::Vector4d(cluster.quantum));
     made.bound = settings.tolerance.value_or(2 * made.parity_quantum + normal_quantile(*pfa / 2) * made.parity_sigma);
     if (!(made.bound > 0))
-        return tl::unexpected(name + ": neither the cluster's sigma or quantum nor a tolerance tells how large a healthy parity may be");
+        return tl::unexpected(name + ": how large a healthy parity may be is not known: state the cluster's sigma or quantum, or a tolerance");
     // Where only a tolerance is known, it stands for twice what quantisation can do.
     if (made.parity_sigma == 0 && made.parity_quantum == 0) made.parity_quantum = made.bound / 2;
     const double regular = made.parity_quantum / made.parity_vector.cwiseAbs().sum();
@@ -75,7 +75,7 @@ void FourAxisDetector::assess(const Measurement& measurement, Assessment& assess
     if (usable == four_axes) {
         judge(frame_of(measurement), assessment);
     } else if (excluded_ != 0) {
-        hear_excluded(measurement);
+        compare_excluded(measurement);
     } else if (holding_) {
         quiet_frames_ = 0;
     } else {
@@ -87,7 +87,7 @@ void FourAxisDetector::assess(const Measurement& measurement, Assessment& assess
 }
 
 /// All four are measured, three are used.
-void FourAxisDetector::hear_excluded(const Measurement& measurement)
+void FourAxisDetector::compare_excluded(const Measurement& measurement)
 {
     if (measurement.usable_of(four_axes) != four_axes) return;
     const Eigen::Map<const Eigen::Vector4d> z(measurement.increment.data());

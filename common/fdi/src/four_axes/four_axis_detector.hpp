@@ -104,7 +104,7 @@ private:
     void judge_suspicion(const Frame& frame, Assessment& assessment);
     void start_again();
     void release();
-    void hear_excluded(const Measurement& measurement);
+    void compare_excluded(const Measurement& measurement);
 
     std::array<geometry::Triad, axis_count> triads_;
     Eigen::Vector4d parity_vector_;

@@ -133,7 +133,7 @@ tl::expected<void, std::string> check_conditions(const Eigen::MatrixXd& a, const
         directions.col(i) = direction.normalized();
     }
     if (std::abs(directions.determinant()) < 1e-3)
-        return tl::unexpected(std::string("condition 3: the two fault directions are parallel, a fault could not be told from the other"));
+        return tl::unexpected(std::string("condition 3: the two fault directions are parallel, so the two faults look alike"));
     return {};
 }
 

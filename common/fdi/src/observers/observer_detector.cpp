@@ -210,7 +210,7 @@ bool ObserverDetector::agrees_with(AxisMask trusted, AxisMask excluded) const
 std::string_view ObserverDetector::reason() const
 {
     if (!place_) return "the known input is missing, and nothing can be expected without it";
-    return settled() ? std::string_view{} : "the observers settle: the samples do not tell the whole state";
+    return settled() ? std::string_view{} : "the observers settle: the samples do not determine the whole state";
 }
 
 double ObserverDetector::worst(std::size_t observer, AxisMask channels) const

@@ -72,7 +72,7 @@ tl::expected<std::unique_ptr<SubsetDetector>, std::string> SubsetDetector::make(
     DetectorSettings complete = settings;
     complete.max_faults = settings.max_faults.value_or(static_cast<unsigned>(std::min<std::size_t>({2, redundant, units})));
     if (*complete.max_faults > redundant || *complete.max_faults > units)
-        return tl::unexpected(fmt::format("subset: max_faults {} is more than {} {} with {} redundant axes can tell", *complete.max_faults,
+        return tl::unexpected(fmt::format("subset: max_faults {} is more than {} {} with {} redundant axes can show", *complete.max_faults,
                                           units, settings.instruments ? "instruments" : "axes", redundant));
     if (const std::size_t sets = count_sets(units, *complete.max_faults); sets > max_sets)
         return tl::unexpected(

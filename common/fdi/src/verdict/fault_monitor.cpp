@@ -143,10 +143,10 @@ FaultDiagnosis FaultMonitor::diagnosis() const
     message.provisional_mask = provisional_mask(verdict_);
     message.absent_mask = watch_->health ? watch_->health->absent() : 0;
     message.degraded_mask = assessment_.degraded & ~verdict_.isolated_mask;
-    const AxisMask told = verdict_.isolated_mask | message.provisional_mask | message.degraded_mask;
+    const AxisMask reported = verdict_.isolated_mask | message.provisional_mask | message.degraded_mask;
     for (std::size_t axis = 0; axis < max_axes; ++axis) {
         const AxisDiagnosis& known = watch_->known[axis];
-        auto kind = has_axis(told, axis) ? known.kind : Diagnosis::none;
+        auto kind = has_axis(reported, axis) ? known.kind : Diagnosis::none;
         if (kind == Diagnosis::none && has_axis(message.absent_mask, axis)) kind = Diagnosis::absent;
         message.diagnosis[axis] = octet(kind);
         if (kind == Diagnosis::none || kind == Diagnosis::absent) continue;

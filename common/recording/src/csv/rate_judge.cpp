@@ -134,7 +134,7 @@ bool RateJudge::looks_like_counts() const
 std::optional<RateJudge::Verdict> RateJudge::by_size() const
 {
     if (largest_ > beyond_deg_s)
-        return Verdict{std::nullopt, fmt::format("they reach {:.6g}, more than any gyro reads in deg/s: say --unit, or --lsb-per-deg-s for "
+        return Verdict{std::nullopt, fmt::format("they reach {:.6g}, more than any gyro reads in deg/s: give --unit, or --lsb-per-deg-s for "
                                                  "raw counts",
                                                  largest_)};
     if (largest_ > beyond_rad_s)
@@ -180,11 +180,11 @@ RateJudge::Verdict RateJudge::verdict() const
 {
     if (looks_like_counts())
         return {std::nullopt,
-                "they are whole numbers, as raw counts are: say --lsb-per-deg-s (16.4 is usual for a range of 2000 deg/s), or --unit"};
-    if (const auto told = by_size()) return *told;
-    if (const auto told = by_step()) return *told;
-    if (const auto told = by_gravity()) return *told;
-    return {std::nullopt, "nothing in them tells rad/s from deg/s: say --unit deg/s or --unit rad/s"};
+                "they are whole numbers, as raw counts are: give --lsb-per-deg-s (16.4 is usual for a range of 2000 deg/s), or --unit"};
+    if (const auto found = by_size()) return *found;
+    if (const auto found = by_step()) return *found;
+    if (const auto found = by_gravity()) return *found;
+    return {std::nullopt, "they may be rad/s or deg/s: give --unit rad/s or --unit deg/s"};
 }
 
 }  // namespace quorient::recording::csv

@@ -117,7 +117,7 @@ std::optional<std::string> CsvLog::apply_options()
     if (options_.rate_unit && options_.lsb_per_deg_s) return "--unit and --lsb-per-deg-s contradict each other";
     for (GyroColumns& gyro : layout_.gyros) {
         if (!gyro.unknown_unit.empty() && !options_.rate_unit && !options_.lsb_per_deg_s)
-            return fmt::format("the header names '{}' as the gyros' unit, and known are rad/s, deg/s, mrad/s and mdeg/s: say --unit, or "
+            return fmt::format("the header names '{}' as the gyros' unit, and known are rad/s, deg/s, mrad/s and mdeg/s: give --unit, or "
                                "--lsb-per-deg-s for raw counts",
                                gyro.unknown_unit);
         if (options_.time_unit && !gyro.time_fraction) gyro.time_unit_ns = in_ns(*options_.time_unit);
@@ -206,7 +206,7 @@ std::optional<std::string> CsvLog::judge_times(std::size_t rows)
         }
         if (gyro.interval && gyro.interval_factor == 0 && !intervals.empty()) {
             const auto unit_ns = unit_of_step(median(intervals));
-            if (!unit_ns) return "the unit of the increments' intervals cannot be told: name it in the header, as in dt_s";
+            if (!unit_ns) return "the unit of the increments' intervals is not known: name it in the header, as in dt_s";
             gyro.interval_factor = static_cast<double>(*unit_ns) * 1e-9;
         }
     }
