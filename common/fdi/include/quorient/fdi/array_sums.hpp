@@ -11,7 +11,7 @@
 namespace quorient::fdi {
 
 /// What to expect of an array that was calibrated: fractions of its interval and of its own noise, as the two MIMU4444 recordings
-/// show them (common/fdi/README.md has the figures). Negligible beside the noise where the motion is gentle.
+/// show them (docs/methods/arrays.md). Negligible beside the noise where the motion is gentle.
 /// @param level  multiplies all that moving brings in: 1 for arrays like those, else what a recording of the array shows.
 MotionNoise usual_motion_noise(const geometry::SensorCluster& cluster, double level = 1);
 
