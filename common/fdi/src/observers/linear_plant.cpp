@@ -1,4 +1,4 @@
-#include "quorient/fdi/linear_plant.hpp"
+#include "quorient/fdi/observer_bank.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "quorient/fdi/linear_plant.hpp"
+#include "quorient/fdi/observer_bank.hpp"
 #include "quorient/messages/limits.hpp"
 
 #include <Eigen/Core>

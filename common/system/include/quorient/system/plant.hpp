@@ -1,7 +1,7 @@
 #pragma once
 
 #include "quorient/configuration/table.hpp"
-#include "quorient/fdi/linear_plant.hpp"
+#include "quorient/fdi/observer_bank.hpp"
 #include "quorient/simulation/vessel.hpp"
 
 #include <optional>
