@@ -26,7 +26,8 @@ std::string words_for(const FrameIntake::Complaint& complaint)
         case Fault::no_description:
             return fmt::format("frames of epoch {} come without a description: publish it, latched, with the same epoch", identity.epoch);
         case Fault::sequence_restart:
-            return fmt::format("sequence {} after {} in one epoch: a publisher that counts from 0 again must choose a new, larger epoch", got, expected);
+            return fmt::format("sequence {} after {} in one epoch: a publisher that counts from 0 again must choose a new, larger epoch",
+                               got, expected);
         case Fault::value:
             return fmt::format("frame {}: axis {} is not finite, or beyond its stated range", identity.sequence, got);
     }
