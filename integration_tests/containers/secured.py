@@ -129,11 +129,11 @@ def main():
     with Seen(secured) as seen:
         try:
             start_up(secured, seen, verdicts)
-            settled = until_settled(seen)
+            until_settled(seen)
             play_all(secured, seen, chapters(), verdicts)
             isolated = {sample.isolated for sample in seen.merged}
             verdicts.check("nothing is isolated, through every restart", isolated == {0}, sorted(isolated))
-            judge_order(seen, verdicts, settled)
+            judge_order(seen, verdicts)
             judge_outsiders(seen, verdicts)
             stop(secured, verdicts)
             found = private_keys_in_image(image)
