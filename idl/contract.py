@@ -131,8 +131,15 @@ def value_matches(value, field):
         return isinstance(value, str) and len(value) <= field.dimensions[-1]
     if field.type == "double":
         return value is None or isinstance(value, (int, float))
+    if value is None:
+        return field.type == "unsigned long long"  # the largest sequence number, "never"
     low, high = LIMITS[field.type]
     return isinstance(value, int) and low <= value < high
+
+
+def without_word(text):
+    """`4 (ISOLATED)` -> `4`: a code is printed with its word."""
+    return re.sub(r"^(\d+) \(.+\)$", r"\1", text)
 
 
 def sample_problems(topic, struct, sample):
@@ -145,7 +152,7 @@ def sample_problems(topic, struct, sample):
     fields = {field.name: field for field in struct.fields}
     for name, text in shown:
         field = fields[name]
-        parts = parts_of(json.loads(text), field.dimensions[:-1] if field.type == "char" else field.dimensions)
+        parts = parts_of(json.loads(without_word(text)), field.dimensions[:-1] if field.type == "char" else field.dimensions)
         if parts is None or not all(value_matches(part, field) for part in parts):
             yield f"sample of {topic}: {name} is {text}, the IDL has {field.shown_type}"
 
