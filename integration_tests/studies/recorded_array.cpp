@@ -53,10 +53,7 @@ SensorFrame frame_of(const calibration::Sample& sample, std::uint64_t sequence, 
     frame.interval_s = sample.interval_s;
     frame.axis_count = static_cast<std::uint8_t>(axes.size());
     frame.valid_mask = sample.complete ? all_axes(axes.size()) : 0;
-    for (std::size_t i = 0; i < axes.size(); ++i) {
-        const double rate = sample.rate(static_cast<Eigen::Index>(axes[i])) - calibration.description.bias[axes[i]];
-        frame.increment[i] = rate * sample.interval_s / calibration.gain[axes[i]];
-    }
+    for (std::size_t i = 0; i < axes.size(); ++i) frame.increment[i] = calibration.corrected(sample, axes[i]);
     return frame;
 }
 

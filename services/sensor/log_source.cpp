@@ -1,6 +1,6 @@
-#include "correction.hpp"
 #include "describe.hpp"
 #include "quorient/attitude/levelling.hpp"
+#include "quorient/calibration/cluster_file.hpp"
 #include "quorient/messages/meaning.hpp"
 #include "quorient/messages/name.hpp"
 #include "quorient/recording/merge.hpp"
@@ -24,7 +24,7 @@ namespace {
 /// A log's axes as they go on the wire, and how its increments become theirs.
 struct DescribedLog {
     ClusterDescription description;
-    Correction correction = Correction::none();
+    calibration::Correction correction = calibration::Correction::none();
     std::string remark{};
 };
 
@@ -133,7 +133,7 @@ private:
     ClusterDescription description_;
     simulation::FaultInjector faults_;
     simulation::FrameAccumulator accumulator_;
-    Correction correction_;
+    calibration::Correction correction_;
     double from_s_;
     double to_s_;
     recording::RecordedFrame record_;
@@ -203,9 +203,9 @@ tl::expected<DescribedLog, std::string> describe_log(recording::Reader& reader, 
         if (const auto other = difference(calibration->description, description))
             return tl::make_unexpected(fmt::format("{}: the calibration is of other sensors: {}", name_of(settings), *other));
         description = calibration->description;
-        if (is_corrected(recorded, description))
+        if (calibration::is_corrected(recorded, description))
             described.remark = "the recording holds increments that this calibration corrected: they are taken as they are";
-        else described.correction = Correction::of(*calibration);
+        else described.correction = calibration->correction();
     }
     std::optional<attitude::Quaternion> levelled;
     if (settings.source.log->rest_s > 0) {

@@ -1,6 +1,6 @@
-#include "correction.hpp"
 #include "describe.hpp"
 #include "imu_alignment.hpp"
+#include "quorient/calibration/cluster_file.hpp"
 #include "quorient/messages/name.hpp"
 #include "rest_learner.hpp"
 #include "sources.hpp"
@@ -33,7 +33,7 @@ public:
         description_.revision = 1;
         description_.unit = settings.process.node.unit;
         if (const auto& calibration = settings.source.calibration) {
-            correction_ = Correction::of(*calibration);
+            correction_ = calibration->correction();
             description_.bias = calibration->description.bias;
         }
         description_.initial_attitude_known =
@@ -237,7 +237,7 @@ private:
     simulation::FaultInjector faults_;
     simulation::FrameAccumulator accumulator_;
     ClusterDescription description_;
-    Correction correction_ = Correction::none();
+    calibration::Correction correction_ = calibration::Correction::none();
     ImuAlignment alignment_;
     RestLearner rest_;
     std::deque<Notice> learned_;  ///< at the start, not reported yet

@@ -82,10 +82,7 @@ void HeldOut::play(Samples samples, const Stretch& stretch, const std::function<
     std::array<double, max_axes> increment{};
     for (std::size_t i = stretch.lead; i < stretch.end; ++i) {
         const Sample sample = samples[i];
-        for (std::size_t axis = 0; axis < axes; ++axis) {
-            const double rate = sample.rate(static_cast<Eigen::Index>(axis)) - calibration.description.bias[axis];
-            increment[axis] = rate * sample.interval_s / calibration.gain[axis];
-        }
+        for (std::size_t axis = 0; axis < axes; ++axis) increment[axis] = calibration.corrected(sample, axis);
         take(i, {.identity = {.epoch = 1, .sequence = i},
                  .interval_s = sample.interval_s,
                  .increment = std::span(std::as_const(increment)).first(axes),

@@ -38,10 +38,7 @@ double largest_statistic(Samples samples, const std::vector<bool>& moving, const
     double largest = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const Sample sample = samples[i];
-        for (std::size_t axis = 0; axis < axes; ++axis) {
-            const double rate = sample.rate(static_cast<Eigen::Index>(axis)) - cluster.description.bias[axis];
-            increment[axis] = rate * sample.interval_s / cluster.gain[axis];
-        }
+        for (std::size_t axis = 0; axis < axes; ++axis) increment[axis] = cluster.corrected(sample, axis);
         detector.assess({.identity = {.epoch = 1, .sequence = i},
                          .interval_s = sample.interval_s,
                          .increment = std::span(increment).first(axes),

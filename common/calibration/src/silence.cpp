@@ -29,10 +29,7 @@ void take(const Sample& sample, const CalibratedCluster& cluster, SensorFrame& f
     frame.sequence += sample.follows ? 1 : 2;  // how much is missing makes no difference
     frame.interval_s = sample.interval_s;
     frame.valid_mask = sample.complete ? all_axes(axes) : 0;
-    for (std::size_t axis = 0; axis < axes; ++axis) {
-        const double rate = sample.rate(static_cast<Eigen::Index>(axis)) - cluster.description.bias[axis];
-        frame.increment[axis] = rate * sample.interval_s / cluster.gain[axis];
-    }
+    for (std::size_t axis = 0; axis < axes; ++axis) frame.increment[axis] = cluster.corrected(sample, axis);
 }
 
 std::optional<Replayed> replay(std::string_view method, Samples samples, const CalibratedCluster& calibrated, const geometry::SensorCluster& cluster)

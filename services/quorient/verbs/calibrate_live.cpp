@@ -2,8 +2,8 @@
 
 #include "cli/program.hpp"
 #include "cli/progress.hpp"
-#include "correction.hpp"
 #include "quorient/bus/topics.hpp"
+#include "quorient/calibration/cluster_file.hpp"
 #include "quorient/intake/frame_intake.hpp"
 #include "quorient/messages/meaning.hpp"
 #include "quorient/runtime/event_loop.hpp"
@@ -71,8 +71,8 @@ private:
     {
         other_axes_ = store_ && (description.axis_count != nominal_.axis_count || description.axis != nominal_.axis);
         if (other_axes_) return false;
-        correction_ = sensor::Correction::none();
-        if (calibration_ && sensor::is_corrected(description, calibration_->description)) correction_.gain = calibration_->gain;
+        correction_ = calibration::Correction::none();
+        if (calibration_ && calibration::is_corrected(description, calibration_->description)) correction_.gain = calibration_->gain;
         correction_.bias_rad_s = description.bias;
         if (store_) return true;
         store_.emplace(description.axis_count);
@@ -87,7 +87,7 @@ private:
 
     std::optional<calibration::CalibratedCluster> calibration_;
     intake::FrameIntake intake_;
-    sensor::Correction correction_ = sensor::Correction::none();
+    calibration::Correction correction_ = calibration::Correction::none();
     std::optional<SampleStore> store_;
     ClusterDescription nominal_;
     recording::Statistics statistics_;
