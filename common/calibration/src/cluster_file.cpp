@@ -12,6 +12,7 @@
 #include <array>
 #include <optional>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 namespace quorient::calibration {
@@ -22,6 +23,9 @@ namespace {
 using settings::not_negative;
 
 constexpr std::size_t longest_origin = 1000;
+// As in the system file: names in a message end with a zero.
+constexpr std::size_t longest_name = std::tuple_size_v<decltype(ClusterDescription::name)> - 1;
+constexpr std::size_t longest_instrument = std::tuple_size_v<decltype(ClusterDescription::instrument_name)::value_type> - 1;
 
 std::string triple(const std::array<double, 3>& values)
 {
@@ -44,19 +48,12 @@ std::string spread_text(double spread_rad_s)
     return spread_rad_s > 0 ? fmt::format("bias_spread_rad_s: {:.17g}, ", spread_rad_s) : std::string();
 }
 
-template <std::size_t Size>
-void set_name(Name<Size>& name, std::string_view text)
-{
-    name = {};
-    std::copy_n(text.begin(), std::min(text.size(), Size), name.begin());
-}
-
 /// The number of this instrument's name; a new name gets the next number.
 std::uint8_t instrument_number(ClusterDescription& description, std::string_view name)
 {
     for (std::uint8_t i = 0; i < description.instrument_count; ++i)
         if (text_of(description.instrument_name[i]) == name) return i;
-    set_name(description.instrument_name[description.instrument_count], name);
+    copy_text(name, description.instrument_name[description.instrument_count]);
     return description.instrument_count++;
 }
 
@@ -103,7 +100,7 @@ const Table<AxisSection>& axis_table()
     static const auto rows = record<AxisSection>(figures);
     static const Table<AxisSection> table{
         "One axis.",
-        {required(value({.name = "instrument", .sentence = "Name, up to 16 bytes."}, &AxisSection::instrument)),
+        {required(value({.name = "instrument", .sentence = "Name, up to 15 bytes."}, &AxisSection::instrument)),
          required(value({.name = "direction", .sentence = "Unit vector in the body frame."}, &AxisSection::direction)),
          value({.name = "position_m", .unit = "m", .sentence = "Place in the body frame."}, &AxisSection::position_m),
          required(chosen(rows, {"gain", "bias_rad_s", "sigma_rad"})), chosen(rows, {"bias_spread_rad_s", "quantum_rad", "range_rad_s"})}};
@@ -150,7 +147,7 @@ const Table<ClusterSection>& cluster_table()
         {{"interval_s", &ClusterSection::interval_s, "s", {.lowest = 1e-9}, "Interval between the recording's frames."}}};
     static const Table<ClusterSection> table{
         "A sensor cluster as calibrated.",
-        {text_row({.name = "name", .sentence = "Name of the cluster, up to 32 bytes."}, &ClusterSection::name),
+        {text_row({.name = "name", .sentence = "Name of the cluster, up to 31 bytes."}, &ClusterSection::name),
          word<ClusterSection, SensorKind>({.name = "kind", .sentence = "What it measures."}, "kind", &ClusterSection::kind,
                                           {{"gyro", SensorKind::gyro}}),
          required(record<ClusterSection>(figures)),
@@ -181,7 +178,7 @@ CalibratedCluster cluster_of(const ClusterSection& section)
     auto& description = cluster.description;
     description.kind = static_cast<std::uint8_t>(section.kind);
     description.interval_s = section.interval_s;
-    set_name(description.name, section.name);
+    copy_text(section.name, description.name);
     cluster.origin = section.origin;
     if (const auto& noise = section.motion_noise) {
         cluster.jitter.along_s = noise->along_s;
@@ -200,10 +197,10 @@ void check(const ClusterSection& section, const YAML::Node& document, Problems& 
     const auto refuse_longer = [&](const std::string& path, const std::string& text, std::size_t longest) {
         if (text.size() > longest) report(problems, document, path, fmt::format("must be a text of at most {} bytes", longest));
     };
-    refuse_longer("name", section.name, sizeof(ClusterDescription::name));
+    refuse_longer("name", section.name, longest_name);
     refuse_longer("origin", section.origin, longest_origin);
     for (std::size_t axis = 0; axis < section.axes.size(); ++axis)
-        refuse_longer(fmt::format("axes[{}].instrument", axis), section.axes[axis].instrument, sizeof(Name<16>));
+        refuse_longer(fmt::format("axes[{}].instrument", axis), section.axes[axis].instrument, longest_instrument);
     if (section.axes.size() < 3) report(problems, document, "axes", fmt::format("must list 3 to {} axes", max_axes));
     if (!problems.empty()) return;
     if (const auto valid = geometry::make_cluster(cluster_of(section).description); !valid)
@@ -231,14 +228,14 @@ std::string to_yaml(const CalibratedCluster& cluster)
         "# A sensor cluster as calibrated. corrected increment = (raw - bias_rad_s * interval) / gain;\n"
         "# directions are unit vectors in the body frame, sigma_rad is of one corrected increment.\n"
         "name: {:?}\nkind: gyro\ninterval_s: {:.17g}\norigin: {:?}\nmotion_noise: {}\naxes:\n",
-        text_of(description.name), description.interval_s, cluster.origin, noise_text(cluster));
+        text_of(description.name).substr(0, longest_name), description.interval_s, cluster.origin, noise_text(cluster));
     for (std::size_t axis = 0; axis < description.axis_count; ++axis) {
         text += fmt::format(
             "  - {{instrument: {:?}, direction: {}, gain: {:.17g},\n"
             "     bias_rad_s: {:.17g}, {}sigma_rad: {:.17g},\n"
             "     quantum_rad: {:.17g}, range_rad_s: {:.17g}, position_m: {}}}\n",
-            text_of(description.instrument_name[description.instrument[axis]]), triple(description.axis[axis]), cluster.gain[axis],
-            description.bias[axis], spread_text(cluster.bias_spread_rad_s[axis]), description.sigma[axis], description.quantum[axis],
+            text_of(description.instrument_name[description.instrument[axis]]).substr(0, longest_instrument), triple(description.axis[axis]),
+            cluster.gain[axis], description.bias[axis], spread_text(cluster.bias_spread_rad_s[axis]), description.sigma[axis], description.quantum[axis],
             description.range[axis], triple(description.position_m[axis]));
     }
     return text;

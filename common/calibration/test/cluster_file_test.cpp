@@ -1,5 +1,6 @@
 #include "quorient/calibration/cluster_file.hpp"
 
+#include "quorient/messages/name.hpp"
 #include "synthetic.hpp"
 
 #include <gmock/gmock.h>
@@ -105,6 +106,31 @@ TEST(ClusterFile, refuses_axes_that_no_cluster_can_have)
     EXPECT_THAT(error("axes: ["), HasSubstr("c:1"));
     EXPECT_THAT(error("[]"), HasSubstr("expected a mapping of keys to values"));
     EXPECT_FALSE(load_cluster("/nowhere.yaml"));
+}
+
+TEST(ClusterFile, refuses_names_that_a_message_would_not_end_with_a_zero)
+{
+    const std::string named = replaced(to_yaml(some_cluster()), R"(instrument: "IMU1")", "instrument: fifteen_letters");
+    const std::string good = replaced(named, R"("a board")", std::string(31, 'b'));
+    const auto read = parse_cluster(good, "c");
+    ASSERT_TRUE(read) << read.error();
+    EXPECT_EQ(read->description.instrument_name[0].back(), '\0');
+    EXPECT_EQ(read->description.name.back(), '\0');
+    const auto longer = parse_cluster(replaced(replaced(good, "fifteen_letters", "sixteen__letters"), "bbb", "bbbb"), "c");
+    ASSERT_FALSE(longer);
+    EXPECT_THAT(longer.error(), AllOf(HasSubstr("axes[0].instrument: must be a text of at most 15 bytes"),
+                                      HasSubstr("name: must be a text of at most 31 bytes")));
+}
+
+TEST(ClusterFile, of_a_publisher_whose_names_are_full_reads_back)
+{
+    CalibratedCluster cluster = some_cluster();
+    cluster.description.name.fill('b');
+    cluster.description.instrument_name[0].fill('i');
+    const auto read = parse_cluster(to_yaml(cluster), "c");
+    ASSERT_TRUE(read) << read.error();
+    EXPECT_EQ(text_of(read->description.name), std::string(31, 'b'));
+    EXPECT_EQ(text_of(read->description.instrument_name[0]), std::string(15, 'i'));
 }
 
 TEST(ClusterFile, survives_any_damage)

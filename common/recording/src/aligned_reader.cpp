@@ -1,6 +1,8 @@
 #include "aligned_reader.hpp"
 
 #include "quorient/messages/meaning.hpp"
+#include "quorient/messages/name.hpp"
+#include "quorient/messages/time.hpp"
 #include "quorient/recording/aligned_logs.hpp"
 #include "readers.hpp"
 
@@ -16,7 +18,7 @@ public:
     {
         description_.kind = octet(SensorKind::gyro);
         description_.interval_s = logs_.interval_s();
-        set_name(description_.name, survey.files.front().stem().string());
+        copy_text(survey.files.front().stem().string(), description_.name);
         for (const std::size_t i : survey.compared) append(survey.instruments[i]);
     }
 
@@ -43,12 +45,12 @@ private:
             description_.range[place] = surveyed.range_rad_s(k);
             description_.instrument[place] = description_.instrument_count;
         }
-        set_name(description_.instrument_name[description_.instrument_count++], instrument.name);
+        copy_text(instrument.name, description_.instrument_name[description_.instrument_count++]);
     }
 
     void give(const AlignedFrame& aligned, RecordedFrame& frame)
     {
-        const std::int64_t begin_ns = aligned.time_ns - std::llround(aligned.interval_s * 1e9);
+        const std::int64_t begin_ns = aligned.time_ns - nanoseconds(aligned.interval_s);
         if (!last_ns_) origin_ns_ = last_ns_ = begin_ns;
         frame = {};
         frame.time_ns = aligned.time_ns - *origin_ns_;

@@ -1,5 +1,7 @@
 #include "readers.hpp"
 
+#include "quorient/messages/name.hpp"
+
 #include <fmt/format.h>
 #include <cmath>
 
@@ -40,7 +42,7 @@ CsvReader::CsvReader(Input input, const std::filesystem::path& file, const CsvCo
     const auto axes = static_cast<std::uint8_t>(columns_.increment.size());
     description_.axis_count = description_.instrument_count = axes;
     for (std::uint8_t axis = 0; axis < axes; ++axis) description_.instrument[axis] = axis;
-    set_name(description_.name, file.stem().string());
+    copy_text(file.stem().string(), description_.name);
 }
 
 std::optional<ReadOutcome> CsvReader::read(Cells cells, RecordedFrame& frame)

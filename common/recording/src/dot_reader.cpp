@@ -1,5 +1,7 @@
 #include "readers.hpp"
 
+#include "quorient/messages/name.hpp"
+
 #include <fmt/format.h>
 #include <cmath>
 
@@ -59,8 +61,8 @@ DotReader::DotReader(Input input, const std::filesystem::path& file, const DotCo
         description_.axis[k][k] = 1.0;
         description_.range[k] = dot_range_rad_s;
     }
-    set_name(description_.instrument_name[0], sensor_name(file));
-    set_name(description_.name, sensor_name(file));
+    copy_text(sensor_name(file), description_.instrument_name[0]);
+    copy_text(sensor_name(file), description_.name);
 }
 
 std::optional<ReadOutcome> DotReader::read(Cells cells, RecordedFrame& frame)

@@ -1,3 +1,4 @@
+#include "quorient/messages/name.hpp"
 #include "readers.hpp"
 #include "quorient/messages/meaning.hpp"
 
@@ -32,9 +33,9 @@ ClusterDescription board()
     board.kind = octet(SensorKind::gyro);
     board.axis_count = 3 * mimu::imus;
     board.instrument_count = mimu::imus;
-    set_name(board.name, "MIMU4444");
+    copy_text("MIMU4444", board.name);
     for (std::size_t imu = 0; imu < mimu::imus; ++imu) {
-        set_name(board.instrument_name[imu], fmt::format("IMU{}", imu + 1));
+        copy_text(fmt::format("IMU{}", imu + 1), board.instrument_name[imu]);
         for (std::size_t k = 0; k < 3; ++k) {
             const std::size_t axis = 3 * imu + k;
             board.axis[axis] = imu % 2 == 0 ? upright[k] : flipped[k];

@@ -16,13 +16,6 @@
 
 namespace quorient::recording {
 
-template <std::size_t Size>
-void set_name(Name<Size>& name, std::string_view text)
-{
-    name = {};
-    std::copy_n(text.begin(), std::min(text.size(), Size - 1), name.begin());
-}
-
 /// The MIMU4444 binary. Give it only a file in which intact packets were found.
 class MimuReader final : public Reader {
 public:

@@ -9,6 +9,7 @@
 #include "cli/system_options.hpp"
 #include "calibrate_live.hpp"
 #include "quorient/calibration/log_sample.hpp"
+#include "quorient/messages/name.hpp"
 #include "quorient/recording/merge.hpp"
 #include "report/sample_store.hpp"
 #include "verbs.hpp"
@@ -72,11 +73,7 @@ ClusterDescription nominal_cluster(const CalibrateOptions& options, const record
         Eigen::Vector3d::Map(nominal.axis[axis].data()) = cluster->axes.row(static_cast<Eigen::Index>(axis));
         nominal.instrument[axis] = static_cast<std::uint8_t>(cluster->instrument[axis]);
     }
-    for (std::size_t i = 0; i < cluster->instrument_name.size(); ++i) {
-        auto& name = nominal.instrument_name[i];
-        name = {};
-        std::copy_n(cluster->instrument_name[i].begin(), std::min(name.size(), cluster->instrument_name[i].size()), name.begin());
-    }
+    for (std::size_t i = 0; i < cluster->instrument_name.size(); ++i) copy_text(cluster->instrument_name[i], nominal.instrument_name[i]);
     return nominal;
 }
 

@@ -2,6 +2,7 @@
 
 #include "quorient/bus/ros2.hpp"
 
+#include "quorient/messages/name.hpp"
 #include "quorient/messages/time.hpp"
 #include "ros2_msgs.h"
 
@@ -30,8 +31,7 @@ char* text(const Name<Size>& name)
 template <std::size_t Size>
 void get(const char* text, Name<Size>& name)
 {
-    name.fill('\0');
-    if (text) std::copy_n(text, strnlen(text, Size - 1), name.begin());
+    copy_text(text ? std::string_view(text, strnlen(text, Size)) : std::string_view(), name);
 }
 
 sensor_msgs_msg_dds__Imu_ to_vendor(const ros2::Imu& imu)

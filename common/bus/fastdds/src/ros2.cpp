@@ -2,6 +2,7 @@
 
 #include "quorient/bus/ros2.hpp"
 
+#include "quorient/messages/name.hpp"
 #include "quorient/messages/time.hpp"
 #include "ros2_msgsPubSubTypes.hpp"
 #include "tolerant_type.hpp"
@@ -35,13 +36,6 @@ std::string text(const Name<Size>& name)
     return {name.data(), ::strnlen(name.data(), Size)};
 }
 
-template <std::size_t Size>
-void get(const std::string& text, Name<Size>& name)
-{
-    name.fill('\0');
-    std::copy_n(text.begin(), std::min(text.size(), Size - 1), name.begin());
-}
-
 void to_vendor(const ros2::Imu& imu, VendorImu& sample)
 {
     put(imu.stamp_ns, sample.header_().stamp_());
@@ -67,7 +61,7 @@ void from_vendor(const VendorImu& sample, ros2::Imu& imu)
     const auto& rate = sample.angular_velocity_();
     const auto& acceleration = sample.linear_acceleration_();
     imu.stamp_ns = stamp_of(sample.header_().stamp_());
-    get(sample.header_().frame_id_(), imu.frame_id);
+    copy_text(sample.header_().frame_id_(), imu.frame_id);
     imu.orientation = {q.w_(), q.x_(), q.y_(), q.z_()};
     imu.orientation_covariance = sample.orientation_covariance_();
     imu.rate_rad_s = {rate.x_(), rate.y_(), rate.z_()};
@@ -103,13 +97,13 @@ void from_vendor(const VendorDiagnostics& sample, ros2::DiagnosticArray& array)
         const auto& theirs = sample.status_()[i];
         auto& status = array.status[i];
         status.level = theirs.level_();
-        get(theirs.name_(), status.name);
-        get(theirs.message_(), status.message);
-        get(theirs.hardware_id_(), status.hardware_id);
+        copy_text(theirs.name_(), status.name);
+        copy_text(theirs.message_(), status.message);
+        copy_text(theirs.hardware_id_(), status.hardware_id);
         status.value_count = static_cast<std::uint32_t>(std::min(theirs.values_().size(), status.values.size()));
         for (std::size_t j = 0; j < status.value_count; ++j) {
-            get(theirs.values_()[j].key_(), status.values[j].key);
-            get(theirs.values_()[j].value_(), status.values[j].value);
+            copy_text(theirs.values_()[j].key_(), status.values[j].key);
+            copy_text(theirs.values_()[j].value_(), status.values[j].value);
         }
     }
 }
