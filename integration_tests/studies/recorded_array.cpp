@@ -4,6 +4,7 @@
 #include "quorient/calibration/gated_terms.hpp"
 #include "quorient/calibration/log_sample.hpp"
 #include "quorient/calibration/motion_level.hpp"
+#include "quorient/messages/time.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -49,7 +50,7 @@ SensorFrame frame_of(const calibration::Sample& sample, std::uint64_t sequence, 
     SensorFrame frame;
     frame.epoch = 1;
     frame.sequence = sequence;
-    frame.sample_time_ns = static_cast<std::int64_t>(sample.time_s * 1e9);
+    frame.sample_time_ns = nanoseconds(sample.time_s);
     frame.interval_s = sample.interval_s;
     frame.axis_count = static_cast<std::uint8_t>(axes.size());
     frame.valid_mask = sample.complete ? all_axes(axes.size()) : 0;

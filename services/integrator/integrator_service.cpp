@@ -2,6 +2,7 @@
 
 #include "quorient/geometry/sensor_cluster.hpp"
 #include "quorient/messages/meaning.hpp"
+#include "quorient/messages/time.hpp"
 
 #include <fmt/format.h>
 #include <utility>
@@ -129,7 +130,7 @@ void IntegratorService::integrate(const SensorFrame& frame)
     node_.set_state(ServiceState::running);
     // A frame that is left out waits for no verdict.
     if (shedding_.leaves_out(*pending_) || (verdict_ && identity_of(*verdict_) >= *pending_)) publish_pending();
-    else patience_timer_.set(arrival_ns_ + static_cast<std::int64_t>(settings_.patience * frame.interval_s * 1e9));
+    else patience_timer_.set(arrival_ns_ + nanoseconds(settings_.patience * frame.interval_s));
 }
 
 void IntegratorService::on_verdict(const FaultVerdict& verdict)

@@ -1,5 +1,7 @@
 #include "imu_alignment.hpp"
 
+#include "quorient/messages/time.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -24,8 +26,8 @@ constexpr std::int64_t fresh_ns = second_ns / 2;
 ImuAlignment::ImuAlignment(const system::Ros2SourceSettings& settings, SensorKind kind, double interval_s)
     : settings_(settings),
       kind_(kind),
-      interval_ns_(std::llround(interval_s * 1e9)),
-      skew_ns_(std::llround(settings.skew_s * 1e9)),
+      interval_ns_(nanoseconds(interval_s)),
+      skew_ns_(nanoseconds(settings.skew_s)),
       heard_(settings.imus.size()),
       instruments_(settings.imus.size())
 {

@@ -2,6 +2,7 @@
 
 #include "quorient/messages/meaning.hpp"
 #include "quorient/messages/name.hpp"
+#include "quorient/messages/time.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -32,7 +33,7 @@ SensorPublisher::SensorPublisher(const system::SensorSettings& settings, std::un
       frame_timer_(loop.timer([this] { tick(); })),
       end_timer_(loop.timer([&loop] { loop.quit(0); })),
       missing_(settings.consumers.begin(), settings.consumers.end()),
-      interval_ns_(static_cast<std::int64_t>(source_->description().interval_s * 1e9 / settings.source.speed))
+      interval_ns_(nanoseconds(source_->description().interval_s / settings.source.speed))
 {
     node_.main_output([this] { return frames_.status(); });
     node_.watch(
@@ -43,7 +44,7 @@ SensorPublisher::SensorPublisher(const system::SensorSettings& settings, std::un
     loop.every(notice_period_ns, [this] { report_notices(); });  // also while the first frame cannot begin
     descriptions_.publish(source_->description());
     node_.set_state(ServiceState::ready);
-    wait_timer_.set(loop.clock().steady_ns() + static_cast<std::int64_t>(settings.wait_s * 1e9));
+    wait_timer_.set(loop.clock().steady_ns() + nanoseconds(settings.wait_s));
 }
 
 void SensorPublisher::on_status(const ServiceStatus& status)

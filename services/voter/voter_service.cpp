@@ -1,6 +1,7 @@
 #include "voter_service.hpp"
 
 #include "quorient/messages/name.hpp"
+#include "quorient/messages/time.hpp"
 
 #include <algorithm>
 
@@ -52,7 +53,7 @@ VoterService::VoterService(const system::VoterProcess& settings, bus::Bus& bus, 
     node_.watch(
         bus::topics::voted.spec.name, [this] { return voted_.status(); }, false);
     // `voted` lives by assertion: a voter that hangs, or has nothing to say, loses it within one lease.
-    loop.every(static_cast<std::int64_t>(settings.voting.lease_s / 4 * 1e9), [this] {
+    loop.every(nanoseconds(settings.voting.lease_s / 4), [this] {
         if (brain_.may_own()) voted_.assert_liveliness();
     });
     loop.until(readiness_period_ns, [this] { return look_at_readiness(); });

@@ -3,11 +3,11 @@
 #include "add_statistics.hpp"
 #include "aligned_reader.hpp"
 #include "mcap/record_parts.hpp"
+#include "quorient/messages/time.hpp"
 #include "readers.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cmath>
 #include <deque>
 
 namespace quorient::recording {
@@ -23,7 +23,7 @@ constexpr std::int64_t switching_ns = 1'000'000'000;
 /// One log beside the first: its frames around the time in hand, on the first log's clock.
 class Follower {
 public:
-    Follower(std::unique_ptr<Reader> reader, double offset_s) : reader_(std::move(reader)), offset_ns_(std::llround(offset_s * 1e9)) {}
+    Follower(std::unique_ptr<Reader> reader, double offset_s) : reader_(std::move(reader)), offset_ns_(nanoseconds(offset_s)) {}
 
     /// Reads everything up to this time. @returns rejected if a record was refused: call again.
     ReadOutcome reach(std::int64_t begin_ns, std::int64_t end_ns)
@@ -43,7 +43,7 @@ public:
     /// After reach(): whether it had begun by then, and whether it has ended before.
     bool begun(std::int64_t begin_ns) const
     {
-        return frames_.empty() || frames_.front().time_ns - std::llround(frames_.front().interval_s * 1e9) <= begin_ns + stamp_rounding_ns;
+        return frames_.empty() || frames_.front().time_ns - nanoseconds(frames_.front().interval_s) <= begin_ns + stamp_rounding_ns;
     }
     bool over(std::int64_t end_ns) const { return ended_ && (frames_.empty() || frames_.back().time_ns < end_ns - stamp_rounding_ns); }
 
@@ -57,7 +57,7 @@ public:
         AxisMask acceleration = all_axes(count);
         std::int64_t covered_ns = 0;
         for (const RecordedFrame& own : frames_) {
-            const std::int64_t own_begin_ns = own.time_ns - std::llround(own.interval_s * 1e9);
+            const std::int64_t own_begin_ns = own.time_ns - nanoseconds(own.interval_s);
             const std::int64_t overlap_ns = std::min(own.time_ns, frame.time_ns) - std::max(own_begin_ns, begin_ns);
             if (overlap_ns <= 0) continue;
             covered_ns += overlap_ns;
@@ -104,7 +104,7 @@ public:
             }
             const auto outcome = merge(frame);
             if (outcome != ReadOutcome::frame) return outcome;  // at the end, what is held was the switching off
-            const std::int64_t begin_ns = frame.time_ns - std::llround(frame.interval_s * 1e9);
+            const std::int64_t begin_ns = frame.time_ns - nanoseconds(frame.interval_s);
             if (frame.time_ns <= switching_ns && !all_begun(begin_ns)) continue;
             if (failed_ || !any_over(frame.time_ns)) return give_out(frame);
             held_.push_back(frame);
@@ -139,7 +139,7 @@ private:
             if (outcome != ReadOutcome::frame) return pass_on(outcome, *leader_);
             pending_ = true;
         }
-        const std::int64_t begin_ns = frame_.time_ns - std::llround(frame_.interval_s * 1e9);
+        const std::int64_t begin_ns = frame_.time_ns - nanoseconds(frame_.interval_s);
         for (Follower& follower : followers_)
             if (follower.reach(begin_ns, frame_.time_ns) == ReadOutcome::rejected) return pass_on(ReadOutcome::rejected, follower.reader());
         frame = frame_;

@@ -48,7 +48,7 @@ ClusterDescription board()
     return board;
 }
 
-std::int64_t nanoseconds(std::int64_t ticks)
+std::int64_t ns_of_ticks(std::int64_t ticks)
 {
     return ticks * 125 / 8;
 }  // 64 MHz
@@ -56,7 +56,7 @@ std::int64_t nanoseconds(std::int64_t ticks)
 }  // namespace
 
 MimuReader::MimuReader(Input input, std::string file)
-    : input_(std::move(input)), file_(std::move(file)), clock_(nanoseconds(mimu::nominal_ticks))
+    : input_(std::move(input)), file_(std::move(file)), clock_(ns_of_ticks(mimu::nominal_ticks))
 {
     description_ = board();
     const auto beginning = input_.peek(mimu::acknowledgement.size());
@@ -148,7 +148,7 @@ bool MimuReader::in_time()
         return false;
     }
     const bool backwards = numbers > 0x8000;
-    const std::int64_t step_ns = backwards ? -1 : nanoseconds(static_cast<std::int64_t>(numbers) * mimu::nominal_ticks + excess_ticks);
+    const std::int64_t step_ns = backwards ? -1 : ns_of_ticks(static_cast<std::int64_t>(numbers) * mimu::nominal_ticks + excess_ticks);
     const auto step = clock_.advance(step_ns);
     statistics_.duration_ns = clock_.elapsed_ns();
     if (step == LogClock::Step::repeated || step == LogClock::Step::irregular ||

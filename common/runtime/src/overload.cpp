@@ -1,5 +1,6 @@
 #include "quorient/runtime/overload.hpp"
 
+#include "quorient/messages/time.hpp"
 #include "quorient/runtime/pace.hpp"
 
 #include <algorithm>
@@ -47,7 +48,7 @@ std::int64_t SampleAge::see(std::uint64_t epoch, std::int64_t stamp_ns, std::int
 }
 
 Overload::Overload(double interval_s)
-    : bound_ns_(static_cast<std::int64_t>(std::max(old_intervals * interval_s, old_at_least_s) * 1e9)),
+    : bound_ns_(nanoseconds(std::max(old_intervals * interval_s, old_at_least_s))),
       may_shed_(Pace::kept_of * interval_s <= longest_kept_interval_s)
 {
 }

@@ -1,3 +1,4 @@
+#include "quorient/messages/time.hpp"
 #include "quorient/simulation/simulated_instrument.hpp"
 #include "quorient/messages/meaning.hpp"
 
@@ -106,7 +107,7 @@ void SimulatedInstrument::advance_to(std::uint64_t sequence, SensorFrame& frame,
     while (next_ <= sequence) produce(next_++, frame);
 
     const double end_s = static_cast<double>(sequence + 1) * scenario_.interval_s;
-    frame.sample_time_ns = std::llround(end_s * 1e9);
+    frame.sample_time_ns = nanoseconds(end_s);
     truth.epoch = epoch_;
     truth.sequence = sequence;
     truth.sample_time_ns = frame.sample_time_ns;

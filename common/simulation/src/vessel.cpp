@@ -3,6 +3,7 @@
 #include "quorient/messages/meaning.hpp"
 
 #include "counter_noise.hpp"
+#include "quorient/messages/time.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/LU>
@@ -141,7 +142,7 @@ bool SimulatedVessel::next(SensorFrame& frame, Eigen::VectorXd& state)
     const Eigen::VectorXd sample = scenario_.model.c * state_;
     frame = {};
     frame.sequence = sequence_;
-    frame.sample_time_ns = std::llround(time * 1e9);
+    frame.sample_time_ns = nanoseconds(time);
     frame.interval_s = scenario_.interval_s;
     frame.kind = octet(SensorKind::vessel_rates);
     frame.axis_count = static_cast<std::uint8_t>(channels);

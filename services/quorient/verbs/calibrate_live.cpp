@@ -6,6 +6,7 @@
 #include "quorient/calibration/cluster_file.hpp"
 #include "quorient/intake/frame_intake.hpp"
 #include "quorient/messages/meaning.hpp"
+#include "quorient/messages/time.hpp"
 #include "quorient/runtime/event_loop.hpp"
 #include "quorient/runtime/signals.hpp"
 
@@ -62,7 +63,7 @@ private:
         ++statistics_.records;
         ++statistics_.frames;
         if (!sample.complete) ++statistics_.incomplete;
-        statistics_.duration_ns = static_cast<std::int64_t>(time_s_ * 1e9);
+        statistics_.duration_ns = nanoseconds(time_s_);
         return store_->add(sample);
     }
 
@@ -111,12 +112,12 @@ LiveSamples receive_samples(const system::System& system, double duration_s)
         if (!room || receiver.other_axes()) loop.quit(ExitCode::refused);
     });
     const std::int64_t begin_ns = clock.steady_ns();
-    loop.timer([&] { loop.quit(ExitCode::done); }).set(begin_ns + static_cast<std::int64_t>(duration_s * 1e9));
+    loop.timer([&] { loop.quit(ExitCode::done); }).set(begin_ns + nanoseconds(duration_s));
     Progress progress;
     loop.every(shown_every_ns, [&] {
         progress.title(fmt::format("{} frames: let them rest, then turn them about all axes", receiver.frames()));
         progress.show(static_cast<std::size_t>((clock.steady_ns() - begin_ns) / shown_every_ns),
-                      static_cast<std::size_t>(duration_s * 1e9) / shown_every_ns);
+                      static_cast<std::size_t>(nanoseconds(duration_s) / shown_every_ns));
     });
     loop.run();
     std::signal(SIGINT, SIG_DFL);  // the fits can be ended

@@ -6,6 +6,7 @@
 #include "quorient/geometry/sensor_cluster.hpp"
 #include "quorient/messages/codes.hpp"
 #include "quorient/messages/meaning.hpp"
+#include "quorient/messages/time.hpp"
 #include "quorient/runtime/signals.hpp"
 #include "quorient/simulation/faults.hpp"
 #include "cli/system_options.hpp"
@@ -51,7 +52,7 @@ ClusterDescription description_of(const BusOptions& options)
         found = description;
         loop.quit(ExitCode::done);
     });
-    loop.timer([&] { loop.quit(ExitCode::not_as_asked); }).set(clock.steady_ns() + static_cast<std::int64_t>(Order::patience_s * 1e9));
+    loop.timer([&] { loop.quit(ExitCode::not_as_asked); }).set(clock.steady_ns() + nanoseconds(Order::patience_s));
     if (loop.run() == ExitCode::done && found.axis_count > 0) return found;
     fmt::print(stderr, "the names of the axes are not known: no description of unit {} came in domain {} on '{}' within {} s\n", options.unit,
                options.joined_domain(), options.interface, Order::patience_s);

@@ -1,6 +1,7 @@
 #include "cli/message_json.hpp"
 #include "cli/message_words.hpp"
 #include "quorient/bus/topics.hpp"
+#include "quorient/messages/time.hpp"
 #include "quorient/runtime/event_loop.hpp"
 #include "quorient/runtime/signals.hpp"
 #include "cli/system_options.hpp"
@@ -93,7 +94,7 @@ int echo(const EchoOptions& options)
         return 2;
     }
     if (options.timeout_s > 0)
-        loop.timer([&] { loop.quit(ExitCode::not_as_asked); }).set(clock.steady_ns() + static_cast<std::int64_t>(options.timeout_s * 1e9));
+        loop.timer([&] { loop.quit(ExitCode::not_as_asked); }).set(clock.steady_ns() + nanoseconds(options.timeout_s));
     loop.timer([&] {
             if (came.shown == 0) fmt::print(stderr, "{} yet\n", came.explained(options));
         }).set(clock.steady_ns() + patience_ns);

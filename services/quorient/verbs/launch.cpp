@@ -198,7 +198,7 @@ public:
         auto& end = loop_.timer([this] { loop_.quit(0); });
         loop_.every(second_ns / 20, [this, &end] { look_at_processes(end); });
         loop_.every(second_ns / 5, [this] { screen_.draw(processes_, clock_.wall_ns()); });
-        if (options_.duration_s) end.set(clock_.steady_ns() + static_cast<std::int64_t>(*options_.duration_s * second_ns));
+        if (options_.duration_s) end.set(clock_.steady_ns() + nanoseconds(*options_.duration_s));
         loop_.run();
         screen_.draw(processes_, clock_.wall_ns());
         processes_.stop();

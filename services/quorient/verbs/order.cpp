@@ -4,6 +4,7 @@
 #include "quorient/messages/codes.hpp"
 #include "quorient/messages/meaning.hpp"
 #include "quorient/messages/name.hpp"
+#include "quorient/messages/time.hpp"
 
 #include <fmt/format.h>
 
@@ -52,7 +53,7 @@ Order::Order(const FaultCommand& command, bus::Bus& bus, runtime::EventLoop& loo
     loop_.on(bus.subscribe(bus::topics::status), [this](const ServiceStatus& status) { on_status(status); });
     loop_.on(bus.subscribe(bus::topics::event), [this](const HealthEvent& event) { on_event(event); });
     loop_.every(look_period_ns, [this] { look(); });
-    loop_.timer([this] { give_up(); }).set(begin_ns_ + static_cast<std::int64_t>(patience_s * 1e9));
+    loop_.timer([this] { give_up(); }).set(begin_ns_ + nanoseconds(patience_s));
 }
 
 void Order::look()

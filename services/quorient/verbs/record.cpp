@@ -1,4 +1,5 @@
 #include "quorient/bus/topics.hpp"
+#include "quorient/messages/time.hpp"
 #include "quorient/recording/csv_writer.hpp"
 #include "quorient/runtime/event_loop.hpp"
 #include "quorient/runtime/signals.hpp"
@@ -69,7 +70,7 @@ public:
         : bus_(options.bus.open("quorient-record")), loop_(*bus_, clock_, runtime::termination_requested())
     {
         if (options.duration_s > 0)
-            loop_.timer([this] { loop_.quit(0); }).set(clock_.steady_ns() + static_cast<std::int64_t>(options.duration_s * 1e9));
+            loop_.timer([this] { loop_.quit(0); }).set(clock_.steady_ns() + nanoseconds(options.duration_s));
     }
 
     bus::Bus& bus() { return *bus_; }

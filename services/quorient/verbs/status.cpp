@@ -3,6 +3,7 @@
 #include "quorient/bus/topics.hpp"
 #include "quorient/messages/meaning.hpp"
 #include "quorient/messages/name.hpp"
+#include "quorient/messages/time.hpp"
 #include "quorient/runtime/event_loop.hpp"
 #include "quorient/runtime/signals.hpp"
 #include "quorient/messages/words.hpp"
@@ -199,7 +200,7 @@ int status(const StatusOptions& options)
         print(received, options, clock.wall_ns());
         return std::fflush(stdout) == 0;
     };
-    const auto period_ns = static_cast<std::int64_t>(options.seconds * 1e9);
+    const auto period_ns = nanoseconds(options.seconds);
     if (options.watch)
         loop.every(period_ns, [&] {
             if (!show()) loop.quit(ExitCode::refused);  // nobody reads it any more

@@ -7,6 +7,7 @@
 #include "quorient/bus/iceoryx_guard.hpp"
 #include "quorient/bus/roudi.hpp"
 #include "quorient/messages/meaning.hpp"
+#include "quorient/messages/time.hpp"
 #include "ros2.hpp"
 #include "security.hpp"
 #include "sender.hpp"
@@ -81,7 +82,7 @@ QosHandle to_qos(const Qos& qos, const WriterOptions* writer, Transport asked)
         dds_qset_ownership(q, DDS_OWNERSHIP_EXCLUSIVE);
         if (writer) {
             dds_qset_ownership_strength(q, writer->strength);
-            dds_qset_liveliness(q, DDS_LIVELINESS_MANUAL_BY_TOPIC, static_cast<dds_duration_t>(offered_lease_s(writer->lease_s) * 1e9));
+            dds_qset_liveliness(q, DDS_LIVELINESS_MANUAL_BY_TOPIC, nanoseconds(offered_lease_s(writer->lease_s)));
         }
     }
     return result;

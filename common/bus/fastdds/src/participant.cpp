@@ -4,6 +4,7 @@
 #include "quorient/bus/contract.hpp"
 #include "quorient/bus/interfaces.hpp"
 #include "quorient/bus/roudi.hpp"
+#include "quorient/messages/time.hpp"
 #include "security.hpp"
 
 #include <fmt/format.h>
@@ -113,7 +114,8 @@ void log_to_stderr()
 
 Duration seconds(double s)
 {
-    return {static_cast<std::int32_t>(s), static_cast<std::uint32_t>((s - static_cast<std::int32_t>(s)) * 1e9)};
+    const auto all_ns = nanoseconds(s);
+    return {static_cast<std::int32_t>(all_ns / second_ns), static_cast<std::uint32_t>(all_ns % second_ns)};
 }
 
 bool shares_memory(const Settings& settings)

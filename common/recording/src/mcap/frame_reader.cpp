@@ -3,6 +3,7 @@
 #include "quorient/messages/codes.hpp"
 #include "quorient/messages/meaning.hpp"
 #include "quorient/messages/sample_time.hpp"
+#include "quorient/messages/time.hpp"
 #include "samples.hpp"
 
 #include <fmt/format.h>
@@ -133,7 +134,7 @@ void FrameReader::begin_with(const SensorFrame& first, const std::vector<Cluster
     latest_ = first;
     first_ = identity_of(first);
     problem_.clear();
-    origin_ns_ = first.sample_time_ns - std::llround(first.interval_s * 1e9);
+    origin_ns_ = first.sample_time_ns - nanoseconds(first.interval_s);
 }
 
 ReadOutcome FrameReader::next(RecordedFrame& frame)

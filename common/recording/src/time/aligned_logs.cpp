@@ -1,5 +1,6 @@
 #include "quorient/recording/aligned_logs.hpp"
 
+#include "quorient/messages/time.hpp"
 #include "stamp_guard.hpp"
 
 #include <fmt/format.h>
@@ -58,7 +59,7 @@ private:
     std::int64_t common_ns(std::int64_t time_ns) const
     {
         const std::int64_t since_ns = time_ns - origin_ns_;
-        return since_ns - std::llround((clock_.offset_s + clock_.slope * static_cast<double>(since_ns) * 1e-9) * 1e9);
+        return since_ns - nanoseconds(clock_.offset_s + clock_.slope * seconds(since_ns));
     }
 
     StampGuard guard_;

@@ -1,6 +1,7 @@
 #include "quorient/recording/instrument_clock.hpp"
 
 #include "median.hpp"
+#include "quorient/messages/time.hpp"
 #include "stamps.hpp"
 
 #include <algorithm>
@@ -94,7 +95,7 @@ Placement ArrivalClock::place(const Waiting& waiting, double earliest_s)
     *base_s_ += lost * period_s_;
     *base_s_ += follow * (earliest_s - *base_s_);
     placed.late_s = waiting.late_s - *base_s_;
-    placed.time_ns = waiting.stamp_ns - std::llround(placed.late_s * 1e9);
+    placed.time_ns = waiting.stamp_ns - nanoseconds(placed.late_s);
     return placed;
 }
 

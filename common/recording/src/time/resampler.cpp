@@ -1,5 +1,7 @@
 #include "quorient/recording/resampler.hpp"
 
+#include "quorient/messages/time.hpp"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -12,11 +14,6 @@ constexpr double bridged = 0.3;           // periods between what two samples co
 constexpr double uncovered_share = 0.02;  // share of an interval that may lack samples
 constexpr std::int64_t uncovered_rounding_ns = 2000;
 constexpr double longest_gap_s = 10.0;    // without any sample: frames go on behind it
-
-std::int64_t ns_of(double seconds)
-{
-    return std::llround(seconds * 1e9);
-}
 
 }  // namespace
 
@@ -36,12 +33,12 @@ void Resampler::add(std::size_t instrument, std::int64_t time_ns, const Instrume
         return;
     }
     const double period_s = settings_.period_s[instrument];
-    const std::int64_t before_ns = track.begun ? track.last_ns : time_ns - ns_of(period_s);
-    Span span{time_ns - ns_of(period_s), time_ns, sample.rate_rad_s, sample.acceleration_m_s2, sample.clipped.value_or(0)};
+    const std::int64_t before_ns = track.begun ? track.last_ns : time_ns - nanoseconds(period_s);
+    Span span{time_ns - nanoseconds(period_s), time_ns, sample.rate_rad_s, sample.acceleration_m_s2, sample.clipped.value_or(0)};
     if (sample.covered_s > 0) {
-        span.begin_ns = std::max(before_ns, time_ns - ns_of(sample.covered_s));
-        if (span.begin_ns - before_ns < ns_of(bridged * period_s)) span.begin_ns = before_ns;
-    } else if (time_ns - before_ns <= ns_of(longest_hold * period_s)) {
+        span.begin_ns = std::max(before_ns, time_ns - nanoseconds(sample.covered_s));
+        if (span.begin_ns - before_ns < nanoseconds(bridged * period_s)) span.begin_ns = before_ns;
+    } else if (time_ns - before_ns <= nanoseconds(longest_hold * period_s)) {
         span.begin_ns = before_ns;
     }
     track.spans.push_back(span);
@@ -58,8 +55,8 @@ void Resampler::add(std::size_t instrument, std::int64_t time_ns, const Instrume
 void Resampler::lead(std::int64_t time_ns)
 {
     if (!last_end_ns_) {
-        const std::int64_t own_ns = time_ns - ns_of(settings_.period_s[settings_.leader]);
-        last_end_ns_ = begin_ns_ = own_ns - *first_ns_ > ns_of(interval_s_) ? *first_ns_ : own_ns;
+        const std::int64_t own_ns = time_ns - nanoseconds(settings_.period_s[settings_.leader]);
+        last_end_ns_ = begin_ns_ = own_ns - *first_ns_ > nanoseconds(interval_s_) ? *first_ns_ : own_ns;
     }
     const double since_s = static_cast<double>(time_ns - *last_end_ns_) * 1e-9;
     const double half_period_s = 0.5 * settings_.period_s[settings_.leader];
@@ -70,10 +67,10 @@ void Resampler::lead(std::int64_t time_ns)
 /// A leader that is far behind the others, or has not begun, gives no ends: they follow at its usual interval.
 void Resampler::lead_without_leader()
 {
-    const std::int64_t latest_ns = newest_ns_ - ns_of(settings_.patience_s);
+    const std::int64_t latest_ns = newest_ns_ - nanoseconds(settings_.patience_s);
     if (!last_end_ns_ && latest_ns > *first_ns_) last_end_ns_ = begin_ns_ = first_ns_;
     if (!last_end_ns_) return;
-    if (latest_ns - *last_end_ns_ < ns_of(interval_s_)) return;
+    if (latest_ns - *last_end_ns_ < nanoseconds(interval_s_)) return;
     push_ends(latest_ns, static_cast<double>(latest_ns - *last_end_ns_) * 1e-9);
 }
 
@@ -90,7 +87,7 @@ void Resampler::finish()
 void Resampler::push_ends(std::int64_t up_to_ns, double since_s)
 {
     if (since_s > longest_gap_s) {
-        *last_end_ns_ = up_to_ns - ns_of(interval_s_);
+        *last_end_ns_ = up_to_ns - nanoseconds(interval_s_);
         ends_ns_.push_back(*last_end_ns_);  // the frame that ends here spans the gap; it is not given out
         since_s = interval_s_;
     }
@@ -105,7 +102,7 @@ bool Resampler::waits_for(const Track& track, std::int64_t end_ns) const
 {
     if (finished_) return false;
     const bool behind = !track.begun || track.last_ns < end_ns;
-    return behind && newest_ns_ - end_ns < ns_of(settings_.patience_s);
+    return behind && newest_ns_ - end_ns < nanoseconds(settings_.patience_s);
 }
 
 bool Resampler::next(AlignedFrame& frame)

@@ -1,8 +1,8 @@
 #include "stamp_guard.hpp"
 
+#include "quorient/messages/time.hpp"
 #include "stamps.hpp"
 
-#include <cmath>
 
 namespace quorient::recording {
 namespace {
@@ -55,7 +55,7 @@ void StampGuard::doubt(const InstrumentSample& sample)
 void StampGuard::believe(std::vector<InstrumentSample>& good)
 {
     const std::int64_t step_ns = doubted_.front().time_ns + shift_ns_ - *last_ns_;
-    if (step_ns <= 0) shift_ns_ += std::llround(period_s_ * 1e9) - step_ns;
+    if (step_ns <= 0) shift_ns_ += nanoseconds(period_s_) - step_ns;
     for (const InstrumentSample& sample : doubted_) accept(sample, good);
     doubted_.clear();
 }

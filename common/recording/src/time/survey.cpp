@@ -1,11 +1,11 @@
 #include "quorient/recording/survey.hpp"
 
+#include "quorient/messages/time.hpp"
 #include "quorient/recording/resampler.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <map>
 #include <span>
 #include <string_view>
@@ -27,7 +27,7 @@ public:
     {
         const std::int64_t since_ns = sample.time_ns - origin_ns;
         if (since_ns < 0) return;
-        const auto number = static_cast<std::size_t>(since_ns / std::llround(window_s * 1e9));
+        const auto number = static_cast<std::size_t>(since_ns / nanoseconds(window_s));
         if (number % stride_ != 0 || number > farthest) return;
         if (of_.size() <= instrument) of_.resize(instrument + 1);
         Kept& of = of_[instrument];

@@ -2,6 +2,7 @@
 
 #include "quorient/recording/survey.hpp"
 
+#include "quorient/messages/time.hpp"
 #include "turn_profile.hpp"
 
 #include <fmt/format.h>
@@ -199,7 +200,7 @@ private:
     {
         Profiles made;
         const bool placed = own_clock && instrument.arrival_period_s;
-        const std::int64_t length_ns = std::llround(window_s * 1e9);
+        const std::int64_t length_ns = nanoseconds(window_s);
         std::int64_t begin_ns = origin_ns(instrument);
         KeptWindow part;
         std::vector<std::int64_t> part_times;
