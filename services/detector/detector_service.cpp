@@ -12,7 +12,6 @@ namespace quorient::detector {
 
 namespace {
 
-constexpr std::int64_t readiness_period_ns = 20'000'000;
 constexpr unsigned most_unmatched_looks = 100;  // 2 s, less than a publisher waits
 
 }  // namespace
@@ -42,18 +41,15 @@ DetectorService::DetectorService(const system::DetectorProcess& settings, bus::B
     frames_ = &loop.on(bus.subscribe(bus::topics::frame), [this](const SensorFrame& frame) { on_frame(frame); });
     node_.watch(
         bus::topics::frame.spec.name, [this] { return frames_->status(); }, true);
-    loop.until(readiness_period_ns, [this] { return look_at_readiness(); });
+    node_.ready_when([this] { return has_all_it_needs(); });
 }
 
-bool DetectorService::look_at_readiness()
+bool DetectorService::has_all_it_needs()
 {
-    if (node_.state() != ServiceState::starting) return true;
     if (!intake_.described() || frames_->status().matched == 0) return false;
     // Where there are no integrators, a monitor may read the verdicts: it is waited for, but not for ever.
     const bool has_waited = !unit_kind(settings_.kind).gives_attitude && ++unmatched_looks_ > most_unmatched_looks;
-    if (verdicts_.status().matched == 0 && !has_waited) return false;
-    node_.set_state(ServiceState::ready);
-    return true;
+    return verdicts_.status().matched > 0 || has_waited;
 }
 
 void DetectorService::on_frame(const SensorFrame& frame)

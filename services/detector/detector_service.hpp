@@ -30,7 +30,7 @@ private:
     void send(const FaultVerdict& verdict);
     bool is_news(const FaultVerdict& verdict) const;
     void adopt(const Exclusions& exclusions);
-    bool look_at_readiness();  ///< @returns whether that is over
+    bool has_all_it_needs();  ///< asked until it is so
 
     system::DetectorProcess settings_;
     runtime::Node node_;

@@ -11,8 +11,6 @@ namespace quorient::integrator {
 
 namespace {
 
-constexpr std::int64_t readiness_period_ns = 20'000'000;
-
 /// Directions of one axis in two descriptions of the same sensors differ by less than this: more than rounding, less than any mounting.
 constexpr double largest_axis_change = 1e-6;
 
@@ -23,7 +21,7 @@ IntegratorService::IntegratorService(const system::IntegratorProcess& settings, 
       node_(settings.process.node, bus, loop),
       attitudes_(bus.advertise(bus::topics::attitude)),
       shedding_(node_, "attitudes"),
-      outlet_(shedding_, loop, [this](const AttitudeState& attitude) { send(attitude); }),
+      outlet_(shedding_, loop, [this](const AttitudeState& attitude) { node_.status().published += attitudes_.publish(attitude) ? 1 : 0; }),
       patience_timer_(loop.timer([this] { publish_pending(); })),
       intake_(settings.process.node.unit, settings.kind),
       intake_report_(node_),
@@ -42,17 +40,10 @@ IntegratorService::IntegratorService(const system::IntegratorProcess& settings, 
         bus::topics::frame.spec.name, [this] { return frames_->status(); }, true);
     node_.watch(
         bus::topics::verdict.spec.name, [this] { return verdicts_->status(); }, true);
-    loop.until(readiness_period_ns, [this] { return look_at_readiness(); });
+    node_.ready_when([this] {
+        return intake_.described() && frames_->status().matched > 0 && verdicts_->status().matched > 0 && attitudes_.status().matched > 0;
+    });
     loop.when_idle([this] { return integrator_ && integrator_->work(); });
-}
-
-bool IntegratorService::look_at_readiness()
-{
-    if (node_.state() != ServiceState::starting) return true;
-    if (!intake_.described() || frames_->status().matched == 0 || verdicts_->status().matched == 0 || attitudes_.status().matched == 0)
-        return false;
-    node_.set_state(ServiceState::ready);
-    return true;
 }
 
 /// The configured attitude was valid at the first start. For a later epoch only an attitude measured at its start counts.
@@ -162,11 +153,6 @@ void IntegratorService::publish_pending()
     node_.handled(identity_of(attitude), arrival_ns_);
     events_.report_changes(attitude, *intake_.description(), integrator_->history_too_short());
     resets_.on_published(*integrator_, identity_of(attitude));
-}
-
-void IntegratorService::send(const AttitudeState& attitude)
-{
-    if (attitudes_.publish(attitude)) ++node_.status().published;
 }
 
 void IntegratorService::on_voted(const VotedAttitude& voted)

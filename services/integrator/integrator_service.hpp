@@ -29,8 +29,6 @@ private:
     bool same_axes(const ClusterDescription& description);
     void integrate(const SensorFrame& frame);
     void publish_pending();
-    void send(const AttitudeState& attitude);
-    bool look_at_readiness();  ///< @returns whether that is over
 
     system::IntegratorProcess settings_;
     runtime::Node node_;

@@ -25,7 +25,7 @@ public:
           description_(describe(*settings.cluster)),
           alignment_(settings_, settings.kind, settings.cluster->interval_s),
           rest_(settings.cluster->instrument, settings_.rest_s),
-          told_(settings_.imus.size(), ImuAlignment::Fault::none),
+          reported_(settings_.imus.size(), ImuAlignment::Fault::none),
           topics_(settings_.imus.size(), Topic::awaited),
           domain_(settings.process.bus.domain)
     {
@@ -96,16 +96,16 @@ public:
         }
         for (std::size_t imu = 0; imu < topics_.size(); ++imu)
             if (auto notice = topic_notice(imu)) return notice;
-        for (std::size_t imu = 0; imu < told_.size(); ++imu) {
+        for (std::size_t imu = 0; imu < reported_.size(); ++imu) {
             const auto fault = alignment_.instruments()[imu].fault;
-            if (fault == told_[imu]) continue;
-            told_[imu] = fault;
+            if (fault == reported_[imu]) continue;
+            reported_[imu] = fault;
             const bool well = fault == ImuAlignment::Fault::none;
             return Notice{well ? Severity::info : Severity::warning_high, axes_of(imu),
                           fmt::format("{}: {}", settings_.imus[imu].name, well ? "measures again" : to_string(fault))};
         }
-        if (told_steps_ == alignment_.clock_steps()) return std::nullopt;
-        told_steps_ = alignment_.clock_steps();
+        if (reported_steps_ == alignment_.clock_steps()) return std::nullopt;
+        reported_steps_ = alignment_.clock_steps();
         return Notice{Severity::warning_high, all_axes(description_.axis_count), "the IMUs' clock was set: the rotation meanwhile is lost"};
     }
 
@@ -241,14 +241,14 @@ private:
     ImuAlignment alignment_;
     RestLearner rest_;
     std::deque<Notice> learned_;  ///< at the start, not reported yet
-    std::vector<ImuAlignment::Fault> told_;
+    std::vector<ImuAlignment::Fault> reported_;
     std::vector<Topic> topics_;  ///< for each IMU
     std::vector<bool> heard_;    ///< for each IMU: whether a message came
     std::vector<bus::Subscription<bus::ros2::Imu>*> subscriptions_;
     std::uint32_t domain_;
     std::int64_t attached_ns_ = 0;
     const runtime::Clock* clock_ = nullptr;
-    std::uint64_t told_steps_ = 0;
+    std::uint64_t reported_steps_ = 0;
     std::uint64_t next_ = 0;
     std::int64_t time_ns_ = 0;
     bool started_ = false;

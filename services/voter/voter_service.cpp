@@ -9,8 +9,6 @@ namespace quorient::voter {
 
 namespace {
 
-constexpr std::int64_t readiness_period_ns = 20'000'000;
-
 /// The strongest voter of the list owns `voted`.
 bus::WriterOptions ownership(const voting::VoterSettings& settings)
 {
@@ -56,17 +54,9 @@ VoterService::VoterService(const system::VoterProcess& settings, bus::Bus& bus, 
     loop.every(nanoseconds(settings.voting.lease_s / 4), [this] {
         if (brain_.may_own()) voted_.assert_liveliness();
     });
-    loop.until(readiness_period_ns, [this] { return look_at_readiness(); });
+    node_.ready_when([this] { return attitudes_->status().matched >= settings_.voting.lanes.size(); });
     if (settings.ros2) ros2_.emplace(*settings.ros2, settings.voting, bus, loop);
     drain();
-}
-
-bool VoterService::look_at_readiness()
-{
-    if (node_.state() != ServiceState::starting) return true;
-    if (attitudes_->status().matched < settings_.voting.lanes.size()) return false;
-    node_.set_state(ServiceState::ready);
-    return true;
 }
 
 void VoterService::on_attitude(const AttitudeState& attitude)

@@ -21,7 +21,6 @@ private:
     bool keep_pace(const AttitudeState& attitude);
     void drain();
     void stamp(VotedAttitude& output);
-    bool look_at_readiness();  ///< @returns whether that is over
     void copy_counters();
 
     system::VoterProcess settings_;

@@ -19,6 +19,7 @@ namespace {
 constexpr std::int64_t status_period_ns = second_ns / 2;
 /// Nobody asks more often whether frames are fresh, and each beat is a system call.
 constexpr std::int64_t heartbeat_period_ns = 20'000'000;
+constexpr std::int64_t readiness_period_ns = 20'000'000;
 constexpr std::int64_t match_patience_ns = 5 * second_ns;
 constexpr std::int64_t day_ns = 24 * 3600 * second_ns;
 constexpr std::int64_t expiry_warning_ns = 30 * day_ns;
@@ -122,7 +123,7 @@ void Node::report(EventCode code, Severity severity, Identity identity, std::uin
 
 bool Node::report_throttled(EventCode code, Severity severity, Identity identity, std::uint32_t axes, std::string_view text)
 {
-    auto& last = last_told_ns_[octet(code)];
+    auto& last = last_reported_ns_[octet(code)];
     const auto now = clock().steady_ns();
     if (last != 0 && now - last < second_ns) return false;
     last = now;
@@ -174,6 +175,15 @@ void Node::set_state(ServiceState state)
     publish_status();
 }
 
+void Node::ready_when(std::function<bool()> has_all_it_needs)
+{
+    loop_.until(readiness_period_ns, [this, has_all_it_needs = std::move(has_all_it_needs)] {
+        if (state() == ServiceState::starting && !has_all_it_needs()) return false;
+        if (state() == ServiceState::starting) set_state(ServiceState::ready);
+        return true;
+    });
+}
+
 void Node::handled(Identity identity, std::int64_t arrival_ns)
 {
     const auto now = clock().steady_ns();
@@ -203,8 +213,8 @@ void Node::look_at_endpoints()
             report(EventCode::incompatible_qos, Severity::warning_high, none, 0,
                    fmt::format("{}: a peer asks for another {}; see the QoS table in idl/README.md", endpoint.what, now.policy));
         }
-        if (now.asked != now.transport && now.asked != Transport::unknown && !endpoint.told_fallback) {
-            endpoint.told_fallback = true;
+        if (now.asked != now.transport && now.asked != Transport::unknown && !endpoint.reported_fallback) {
+            endpoint.reported_fallback = true;
             report(EventCode::transport_fallback, Severity::warning_high, none, 0,
                    fmt::format("{} goes by {}: {} was asked for and is not available", endpoint.what, bus::to_string(now.transport),
                                bus::to_string(now.asked)));
@@ -216,8 +226,8 @@ void Node::look_at_endpoints()
                                now.refused, bus::to_string(now.transport)));
         }
         if (now.matched > 0) endpoint.must_match = false;
-        if (endpoint.must_match && !endpoint.told_unmatched && clock().steady_ns() - started_ns_ > match_patience_ns) {
-            endpoint.told_unmatched = true;
+        if (endpoint.must_match && !endpoint.reported_unmatched && clock().steady_ns() - started_ns_ > match_patience_ns) {
+            endpoint.reported_unmatched = true;
             report(EventCode::no_match, Severity::warning_high, none, 0,
                    fmt::format("{} matched nobody for 5 s: is the peer running, in this domain, on this network, with this IDL?",
                                endpoint.what));
@@ -227,8 +237,8 @@ void Node::look_at_endpoints()
 
 void Node::look_at_shared_memory()
 {
-    if (told_shared_memory_lost_ || !bus_.shared_memory_lost()) return;
-    told_shared_memory_lost_ = true;
+    if (reported_shared_memory_lost_ || !bus_.shared_memory_lost()) return;
+    reported_shared_memory_lost_ = true;
     report(EventCode::shared_memory_lost, Severity::warning_high, {status_.epoch, status_.sequence}, 0,
            "iceoryx's daemon is gone or another one: who starts from now on shares no memory with this process");
 }

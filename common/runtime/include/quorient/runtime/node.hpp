@@ -58,6 +58,9 @@ public:
     void set_state(ServiceState state);
     ServiceState state() const { return state_of(status_); }
 
+    /// From `starting` to `ready` as soon as this is true. It is asked 50 times a second, and no more once the state is another one.
+    void ready_when(std::function<bool()> has_all_it_needs);
+
     /// Counters are written here by the service and go out twice a second.
     ServiceStatus& status() { return status_; }
 
@@ -89,8 +92,8 @@ private:
         bool must_match;  ///< and has not yet
         std::uint32_t incompatible = 0;
         std::uint64_t refused = 0;
-        bool told_unmatched = false;
-        bool told_fallback = false;
+        bool reported_unmatched = false;
+        bool reported_fallback = false;
     };
 
     bool is_new(std::uint64_t request);
@@ -112,14 +115,14 @@ private:
     std::optional<ServiceManager> service_manager_;
     ServiceStatus status_;
     std::uint64_t event_number_ = 0;
-    std::array<std::int64_t, 256> last_told_ns_{};
+    std::array<std::int64_t, 256> last_reported_ns_{};
     std::array<std::int64_t, 1024> latency_ns_{};  // ring of the newest
     std::size_t latency_count_ = 0;
     std::array<std::uint64_t, 16> request_{};  // ring of the newest
     std::size_t request_count_ = 0;
     std::vector<Watched> watched_;
     std::function<bus::EndpointStatus()> main_output_;
-    bool told_shared_memory_lost_ = false;
+    bool reported_shared_memory_lost_ = false;
     bus::Subscription<FaultCommand>* orders_ = nullptr;
     std::int64_t expiry_reported_ns_ = 0;  ///< steady; 0 = never
     std::int64_t started_ns_;
