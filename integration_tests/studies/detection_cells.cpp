@@ -46,21 +46,21 @@ Trial drawn(const RecordedArray& array, const Cell& cell, const std::vector<std:
     return trial;
 }
 
-Reactions summed(const std::vector<TrialResult>& results, Reaction TrialResult::*method)
+Reactions summed(const std::vector<TrialResult>& results, Judged TrialResult::*method)
 {
     Reactions sum;
     std::vector<double> detected;
     std::vector<double> isolated;
     for (const TrialResult& result : results) {
-        const Reaction& reaction = result.*method;
-        const bool right = reaction.judgement == Judgement::right;
+        const Judged& judged = result.*method;
+        const bool right = judged.judgement == Judgement::right;
         sum.right += right ? 1 : 0;
-        sum.wrong += reaction.judgement == Judgement::wrong ? 1 : 0;
-        sum.ambiguous += reaction.judgement == Judgement::ambiguous ? 1 : 0;
-        sum.missed += reaction.judgement == Judgement::missed ? 1 : 0;
-        detected.push_back(reaction.detected_s);
-        isolated.push_back(right ? reaction.isolated_s : std::numeric_limits<double>::infinity());
-        if (right) sum.slowest_isolated_s = std::max(sum.slowest_isolated_s, reaction.isolated_s);
+        sum.wrong += judged.judgement == Judgement::wrong ? 1 : 0;
+        sum.ambiguous += judged.judgement == Judgement::ambiguous ? 1 : 0;
+        sum.missed += judged.judgement == Judgement::missed ? 1 : 0;
+        detected.push_back(judged.detected_s());
+        isolated.push_back(right ? judged.isolated_s() : std::numeric_limits<double>::infinity());
+        if (right) sum.slowest_isolated_s = std::max(sum.slowest_isolated_s, judged.isolated_s());
     }
     sum.median_detected_s = median(std::move(detected));
     sum.median_isolated_s = median(isolated);

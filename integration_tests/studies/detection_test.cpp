@@ -68,8 +68,8 @@ TEST(DetectionTrial, judges_the_isolation_of_the_axis_or_of_its_instrument_right
     for (const bool instruments : {false, true}) {
         const TrialResult result = played(5, instruments);
         EXPECT_EQ(result.ours.judgement, Judgement::right);
-        EXPECT_GE(result.ours.isolated_s, interval_s);
-        EXPECT_LE(result.ours.isolated_s, 0.1);
+        EXPECT_GE(result.ours.isolated_s(), interval_s);
+        EXPECT_LE(result.ours.isolated_s(), 0.1);
         EXPECT_LE(std::abs(result.onset_error_s), 3 * interval_s);
         EXPECT_GT(result.attitude_bound_rad, 0.1 * degree * 0.999);
         EXPECT_LE(result.attitude_error_rad, result.attitude_bound_rad);
@@ -93,7 +93,7 @@ TEST(DetectionTrial, calls_a_fault_missed_that_nobody_sees)
     const TrialResult result = played(1e-4, true);
     EXPECT_EQ(result.ours.judgement, Judgement::missed);
     EXPECT_EQ(result.px4.judgement, Judgement::missed);
-    EXPECT_TRUE(std::isinf(result.ours.isolated_s));
+    EXPECT_TRUE(std::isinf(result.ours.isolated_s()));
 }
 
 // Two thirds of a fault differ from the mean of three; d is that, smoothed with time constant tau = 20 samples:
@@ -116,7 +116,7 @@ TEST(Px4Rule, finds_what_its_description_says_it_finds_and_when)
     for (const double fault : {22.9, 60.0}) {
         const TrialResult result = played(fault, true);
         EXPECT_EQ(result.px4.judgement, Judgement::right) << fault;
-        EXPECT_NEAR(result.px4.isolated_s, px4_delay_s(fault), 0.02 * px4_delay_s(fault)) << fault;
+        EXPECT_NEAR(result.px4.isolated_s(), px4_delay_s(fault), 0.02 * px4_delay_s(fault)) << fault;
     }
     EXPECT_EQ(played(10, true).px4.judgement, Judgement::missed) << "two thirds of 10 deg/s are below 7";
 }

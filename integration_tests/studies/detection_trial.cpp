@@ -24,30 +24,24 @@ double begin_s(const SensorFrame& frame)
     return static_cast<double>(frame.sample_time_ns) * 1e-9 - frame.interval_s;
 }
 
-/// Time from the fault's beginning to the end of this frame; infinite before it.
+/// Time from the fault's beginning to the end of this frame.
 double delay_s(const RecordedArray& array, const Trial& trial, std::size_t at)
 {
-    if (at < trial.onset) return std::numeric_limits<double>::infinity();
     return static_cast<double>(array.frames[at].sample_time_ns) * 1e-9 - begin_s(array.frames[trial.onset]);
 }
 
 /// What the isolation of these axes in this frame is worth.
-void judge(const RecordedArray& array, const Trial& trial, std::size_t at, AxisMask isolated, Reaction& reaction)
+Judgement worth(const Trial& trial, std::size_t at, AxisMask isolated)
 {
     const bool named = has_axis(isolated, trial.axis) && (isolated & ~trial.allowed) == 0;
-    reaction.judgement = named && at >= trial.onset ? Judgement::right : Judgement::wrong;
-    reaction.isolated_s = delay_s(array, trial, at);
-    reaction.detected_s = std::min(reaction.detected_s, reaction.isolated_s);
+    return named && at >= trial.onset ? Judgement::right : Judgement::wrong;
 }
 
-void watch(const RecordedArray& array, const Trial& trial, std::size_t at, const FaultVerdict& verdict, Reaction& reaction)
+void watch(const RecordedArray& array, const Trial& trial, std::size_t at, const FaultVerdict& verdict, Judged& judged)
 {
-    if (verdict.isolated_mask != 0) return judge(array, trial, at, verdict.isolated_mask, reaction);
-    const auto state = state_of(verdict);
-    const bool quiet = state == VerdictState::healthy || state == VerdictState::warming_up;
-    if (quiet || at < trial.onset) return;
-    reaction.detected_s = std::min(reaction.detected_s, delay_s(array, trial, at));
-    if (state == VerdictState::ambiguous) reaction.judgement = Judgement::ambiguous;
+    if (at >= trial.onset) judged.reaction.update(verdict, ~AxisMask{0}, delay_s(array, trial, at));
+    if (verdict.isolated_mask != 0) judged.judgement = worth(trial, at, verdict.isolated_mask);
+    else if (at >= trial.onset && state_of(verdict) == VerdictState::ambiguous) judged.judgement = Judgement::ambiguous;
 }
 
 /// The attitude after these frames, which the exclusion reached at the end.
@@ -110,7 +104,12 @@ TrialResult play(const RecordedArray& array, const Trial& trial, fdi::FaultMonit
         SensorFrame frame = array.frames[i];
         if (begin_s(frame) > fault.start_s + horizon_s) break;
         injector.apply(frame, begin_s(frame));
-        if (theirs == 0 && (theirs = px4.update(frame)) != 0) judge(array, trial, i, theirs, result.px4);
+        if (theirs == 0 && (theirs = px4.update(frame)) != 0) {
+            FaultVerdict verdict;
+            verdict.state = octet(VerdictState::isolated);
+            verdict.isolated_mask = theirs;
+            watch(array, trial, i, verdict, result.px4);
+        }
         if (ours != 0) continue;
         frames.push_back(frame);
         const FaultVerdict& verdict = monitor.assess(frame);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "quorient/evaluation/fault_spells.hpp"
 #include "quorient/fdi/fault_monitor.hpp"
 #include "quorient/simulation/faults.hpp"
 #include "recorded_array.hpp"
@@ -17,11 +18,13 @@ enum class Judgement : std::uint8_t {
     missed,
 };
 
-/// How one method reacted to a fault; times from the fault's beginning to the end of the frame.
-struct Reaction {
+/// What one method made of a fault; times from the fault's beginning to the end of the frame, infinite where it did not come to that.
+struct Judged {
     Judgement judgement = Judgement::missed;
-    double detected_s = std::numeric_limits<double>::infinity();  ///< first frame that is not healthy
-    double isolated_s = std::numeric_limits<double>::infinity();
+    evaluation::Reaction reaction;
+
+    double detected_s() const { return reaction.detected_s.value_or(std::numeric_limits<double>::infinity()); }
+    double isolated_s() const { return reaction.isolated_s.value_or(std::numeric_limits<double>::infinity()); }
 };
 
 /// One fault on one axis of a recording.
@@ -33,8 +36,8 @@ struct Trial {
 };
 
 struct TrialResult {
-    Reaction ours;
-    Reaction px4;
+    Judged ours;
+    Judged px4;
     /// Where ours is right and the fault is a bias:
     double onset_error_s = 0;       ///< excluded from, minus true onset; below 0 = early
     double attitude_error_rad = 0;  ///< after roll-back, against a run that knew the true onset

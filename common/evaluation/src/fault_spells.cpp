@@ -1,5 +1,7 @@
 #include "quorient/evaluation/fault_spells.hpp"
 
+#include "quorient/messages/meaning.hpp"
+
 #include <algorithm>
 
 namespace quorient::evaluation {
@@ -26,10 +28,20 @@ void Spells::update(AxisMask mask, double time_s)
     last_ = mask;
 }
 
+void Reaction::update(const FaultVerdict& verdict, AxisMask faulty, double time_s)
+{
+    if (!detected_s && sees_fault(verdict)) detected_s = time_s;
+    if (!isolated_s && (verdict.isolated_mask & faulty) != 0) {
+        isolated_s = time_s;
+        isolated = verdict.isolated_mask;
+    }
+}
+
 Reaction reaction(const Spell& fault, const Spells& isolated)
 {
     for (const Spell& spell : isolated.all())
-        if (began_within(spell, fault)) return {spell.begin_s, spell.end_s};
+        if (began_within(spell, fault))
+            return {.detected_s = {}, .isolated_s = spell.begin_s, .trusted_s = spell.end_s, .isolated = axis_bit(spell.axis)};
     return {};
 }
 

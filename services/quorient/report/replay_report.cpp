@@ -8,15 +8,6 @@
 
 namespace quorient::report {
 
-namespace {
-
-bool seen(const FaultVerdict& verdict)
-{
-    return sees_fault(verdict);
-}
-
-}  // namespace
-
 void ReplayReport::on_description(const ClusterDescription& description)
 {
     if (!lanes_.empty()) return;
@@ -25,7 +16,7 @@ void ReplayReport::on_description(const ClusterDescription& description)
     const auto cluster = geometry::make_cluster(description);
     for (const auto& spec : system_.sensor.source.scenario.faults) {
         const auto resolved = cluster ? simulation::resolve(spec, *cluster) : tl::make_unexpected(cluster.error());
-        faults_.push_back({resolved ? *resolved : spec, std::vector<Reaction>(system_.lanes.size())});
+        faults_.push_back({resolved ? *resolved : spec, std::vector<evaluation::Reaction>(system_.lanes.size())});
     }
 }
 
@@ -50,12 +41,7 @@ void ReplayReport::judge(std::size_t lane, const FaultVerdict& verdict)
     for (auto& fault : faults_) {
         if (time_s < fault.spec.start_s) continue;
         faulty |= fault.spec.axes;
-        auto& reaction = fault.lanes[lane];
-        if (!reaction.detected_s && seen(verdict)) reaction.detected_s = time_s;
-        if (!reaction.isolated_s && (verdict.isolated_mask & fault.spec.axes) != 0) {
-            reaction.isolated_s = time_s;
-            reaction.isolated = verdict.isolated_mask;
-        }
+        fault.lanes[lane].update(verdict, fault.spec.axes, time_s);
     }
     Lane& its = lanes_[lane];
     const AxisMask newly = verdict.isolated_mask & ~its.isolated;

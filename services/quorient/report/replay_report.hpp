@@ -1,5 +1,6 @@
 #pragma once
 
+#include "quorient/evaluation/fault_spells.hpp"
 #include "quorient/messages/cluster_description.hpp"
 #include "quorient/messages/fault_diagnosis.hpp"
 #include "quorient/messages/fault_verdict.hpp"
@@ -35,14 +36,9 @@ public:
     const std::optional<VotedAttitude>& final_attitude() const { return final_attitude_; }
 
 private:
-    struct Reaction {
-        std::optional<double> detected_s;
-        std::optional<double> isolated_s;
-        AxisMask isolated = 0;
-    };
     struct Fault {
         simulation::FaultSpec spec;
-        std::vector<Reaction> lanes;
+        std::vector<evaluation::Reaction> lanes;
     };
     struct Isolation {
         std::size_t lane;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "quorient/messages/fault_verdict.hpp"
 #include "quorient/messages/limits.hpp"
 
 #include <cstddef>
@@ -31,12 +32,18 @@ private:
     std::vector<Spell> spells_;
 };
 
-/// How one lane reacted to one fault.
+/// How one lane, or one method, reacted to one fault.
 struct Reaction {
-    std::optional<double> isolated_s;  ///< within the fault's spell
-    std::optional<double> trusted_s;   ///< again
+    std::optional<double> detected_s;  ///< first verdict that sees a fault
+    std::optional<double> isolated_s;
+    std::optional<double> trusted_s;  ///< again
+    AxisMask isolated = 0;            ///< all that was isolated at isolated_s
+
+    /// One verdict since the fault of these axes began.
+    void update(const FaultVerdict& verdict, AxisMask faulty, double time_s);
 };
 
+/// @returns when the fault's axis was isolated within its spell, and trusted again
 Reaction reaction(const Spell& fault, const Spells& isolated);
 
 /// The isolations that began while their axis was not faulty.
