@@ -26,4 +26,12 @@ void add_verbs(Program& program)
     add_diagnose(program);
 }
 
+int run_quorient(int argc, char** argv)
+{
+    Program program{"quorient", "Quorient: a fault-tolerant attitude pipeline.\nAxes are 0-based: the papers' G2 is axis 1."};
+    program.footer("Every verb has --help with an example, e.g. quorient assess --help");
+    add_verbs(program);
+    return program.run({argv + 1, argv + argc});
+}
+
 }  // namespace quorient::cli

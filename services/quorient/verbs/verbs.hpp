@@ -30,4 +30,7 @@ void add_diagnose(Program& program);
 /// All verbs of the program.
 void add_verbs(Program& program);
 
+/// The program with all its verbs. @returns its exit code
+int run_quorient(int argc, char** argv);
+
 }  // namespace quorient::cli
