@@ -96,12 +96,11 @@ std::string Screen::time_of(const HealthEvent& event) const
     return event.epoch == 0 ? std::string{} : fmt::format("{:.3f} s", run_.time_s({event.epoch, event.sequence}));
 }
 
-void Screen::on_event(const HealthEvent& event)
+void Screen::on_event(const HealthEvent& event, std::int64_t steady_ns)
 {
     if (quiet_ || event.unit != system_.unit) return;
     if (!terminal_) {
-        fmt::print("{:>9}  {:<11} {}\n", time_of(event), text_of(event.source_name), text_of(event.text));
-        std::fflush(stdout);
+        order_.add(event, time_of(event), steady_ns);
         return;
     }
     story_.add(event, time_of(event));
@@ -109,6 +108,23 @@ void Screen::on_event(const HealthEvent& event)
         level_since_ns_ = event.wall_time_ns;
         level_voter_ = event.source;
     }
+}
+
+void Screen::print_due(std::int64_t steady_ns)
+{
+    print(order_.due(steady_ns));
+}
+
+void Screen::print_rest()
+{
+    print(order_.rest());
+}
+
+void Screen::print(const std::vector<EventOrder::Held>& events)
+{
+    for (const auto& [event, time, arrived_ns] : events)
+        fmt::print("{:>9}  {:<11} {}\n", time, text_of(event.source_name), text_of(event.text));
+    if (!events.empty()) std::fflush(stdout);
 }
 
 std::string Screen::standing(std::int64_t now_ns) const

@@ -182,7 +182,7 @@ public:
         loop_.on(bus.subscribe(bus::topics::frame), [this](const SensorFrame& m) { observer_.on_frame(m); });
         loop_.on(bus.subscribe(bus::topics::attitude), [this](const AttitudeState& m) { observer_.on_attitude(m); });
         loop_.on(bus.subscribe(bus::topics::voter_output), [this](const VotedAttitude& m) { observer_.on_voted(m); });
-        loop_.on(bus.subscribe(bus::topics::event), [this](const HealthEvent& m) { screen_.on_event(m); });
+        loop_.on(bus.subscribe(bus::topics::event), [this](const HealthEvent& m) { screen_.on_event(m, clock_.steady_ns()); });
         prepare_run_directory();
         roudi_problem_ = roudi_.start(system, processes_);
         add_processes(chosen, options.system, processes_);
@@ -196,11 +196,15 @@ public:
         }
         processes_.start();
         auto& end = loop_.timer([this] { loop_.quit(0); });
-        loop_.every(second_ns / 20, [this, &end] { look_at_processes(end); });
+        loop_.every(second_ns / 20, [this, &end] {
+            look_at_processes(end);
+            screen_.print_due(clock_.steady_ns());
+        });
         loop_.every(second_ns / 5, [this] { screen_.draw(processes_, clock_.wall_ns()); });
         if (options_.duration_s) end.set(clock_.steady_ns() + nanoseconds(*options_.duration_s));
         loop_.run();
         screen_.draw(processes_, clock_.wall_ns());
+        screen_.print_rest();
         processes_.stop();
         return conclude();
     }
