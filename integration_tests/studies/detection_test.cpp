@@ -1,3 +1,4 @@
+#include "data_folder.hpp"
 #include "detection_cells.hpp"
 #include "quorient/diagnosis/px4_rule.hpp"
 #include "quorient/messages/units.hpp"
@@ -20,8 +21,7 @@ constexpr double interval_s = 0.016;
 
 std::filesystem::path data_dir()
 {
-    const char* const given = std::getenv("QUORIENT_DATA_DIR");
-    return given != nullptr ? std::filesystem::path(given) : std::filesystem::path(QUORIENT_SOURCE_DIR) / ".." / "shared" / "data";
+    return recording::data_folder(QUORIENT_SOURCE_DIR);
 }
 
 /// Three instruments at rest for 60 s, with white noise of 0.2 deg/s.

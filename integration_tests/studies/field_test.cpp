@@ -2,18 +2,17 @@
 
 #include "field_trial.hpp"
 
+#include "data_folder.hpp"
 #include "quorient/messages/units.hpp"
 
 #include <gtest/gtest.h>
-#include <cstdlib>
 
 namespace quorient::studies {
 namespace {
 
 std::filesystem::path data_dir()
 {
-    const char* const given = std::getenv("QUORIENT_DATA_DIR");
-    return given != nullptr ? std::filesystem::path(given) : std::filesystem::path(QUORIENT_SOURCE_DIR) / ".." / "shared" / "data";
+    return recording::data_folder(QUORIENT_SOURCE_DIR);
 }
 
 fdi::FaultMonitor monitor_on(const FieldLog& log, fdi::Mount mount = fdi::Mount::board)

@@ -2,11 +2,11 @@
 #include "cli/output_file.hpp"
 #include "cli/program.hpp"
 #include "cli/progress.hpp"
+#include "data_folder.hpp"
 #include "quorient/runtime/log.hpp"
 #include "study.hpp"
 
 #include <fmt/format.h>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -68,9 +68,7 @@ std::vector<std::filesystem::path> logs_of(const Study& study, const Options& op
     if (options.logs.size() == 1)
         cli::fail("--log: two or more recordings of the same sensors are needed: each is calibrated by another one");
     if (!options.logs.empty()) return {options.logs.begin(), options.logs.end()};
-    const char* const given = std::getenv("QUORIENT_DATA_DIR");
-    const std::filesystem::path folder =
-        (given != nullptr ? std::filesystem::path(given) : "../shared/data") / std::filesystem::path("mimu4444_carlsson");
+    const auto folder = recording::data_folder("") / "mimu4444_carlsson";
     return {folder / "exp_1/data.bin", folder / "exp_2/data.bin"};
 }
 

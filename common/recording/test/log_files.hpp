@@ -2,9 +2,10 @@
 
 #include "quorient/recording/reader.hpp"
 
+#include "data_folder.hpp"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -14,8 +15,7 @@ namespace quorient::recording {
 
 inline std::filesystem::path data_dir()
 {
-    const char* const given = std::getenv("QUORIENT_DATA_DIR");
-    return given != nullptr ? std::filesystem::path(given) : std::filesystem::path(QUORIENT_SOURCE_DIR) / ".." / "shared" / "data";
+    return data_folder(QUORIENT_SOURCE_DIR);
 }
 
 /// A folder of its own for each test, gone with it.

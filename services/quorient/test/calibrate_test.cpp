@@ -1,4 +1,5 @@
 #include "cli/svg_plot.hpp"
+#include "data_folder.hpp"
 #include "report/sample_store.hpp"
 #include "run_verb.hpp"
 #include "verbs.hpp"
@@ -25,8 +26,7 @@ constexpr double degree = 3.14159265358979323846 / 180;
 
 std::filesystem::path data_dir()
 {
-    const char* const given = std::getenv("QUORIENT_DATA_DIR");
-    return given != nullptr ? std::filesystem::path(given) : std::filesystem::path(QUORIENT_SOURCE_DIR) / ".." / "shared" / "data";
+    return recording::data_folder(QUORIENT_SOURCE_DIR);
 }
 
 Output run(const std::string& arguments)

@@ -1,10 +1,10 @@
+#include "data_folder.hpp"
 #include "run_verb.hpp"
 #include "verbs.hpp"
 
 #include <gmock/gmock.h>
 #include <unistd.h>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
@@ -23,9 +23,7 @@ using testing::Not;
 
 std::filesystem::path field_dir()
 {
-    const char* const given = std::getenv("QUORIENT_DATA_DIR");
-    const auto data = given != nullptr ? std::filesystem::path(given) : std::filesystem::path(QUORIENT_SOURCE_DIR) / ".." / "shared" / "data";
-    return data / "field";
+    return recording::data_folder(QUORIENT_SOURCE_DIR) / "field";
 }
 
 Output run(const std::string& arguments)
