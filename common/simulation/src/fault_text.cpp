@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <iterator>
+#include <optional>
 
 namespace quorient::simulation {
 namespace {
@@ -69,6 +70,18 @@ tl::expected<AxisMask, std::string> parse_axes(std::string_view word)
         begin = end + 1;
     }
     return axes;
+}
+
+/// Whether one of `a+b` is neither a number nor meant as one.
+bool has_name(std::string_view text)
+{
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find('+', begin), text.size());
+        const std::string_view word = text.substr(begin, end - begin);
+        if (!word.starts_with('-') && word.find_first_not_of("0123456789") != std::string_view::npos) return true;
+        begin = end + 1;
+    }
+    return false;
 }
 
 /// One key=value into the fault; the error says what is wrong.
@@ -157,11 +170,12 @@ tl::expected<AxisMask, std::string> axes_of(const std::string& instrument, const
 
 }  // namespace
 
-tl::expected<FaultSpec, std::string> parse_fault(std::string_view text)
+tl::expected<FaultSpec, std::string> parse_fault(std::string_view text, const AxisNames& names)
 {
     const auto refuse = [&](const std::string& why) { return tl::unexpected(fmt::format("fault '{}': {}", text, why)); };
     FaultSpec fault;
     Given given{};
+    std::optional<std::string_view> named;
     for (std::size_t begin = 0; begin <= text.size();) {
         const std::size_t end = std::min(text.find(',', begin), text.size());
         const std::string_view pair = text.substr(begin, end - begin);
@@ -173,11 +187,17 @@ tl::expected<FaultSpec, std::string> parse_fault(std::string_view text)
         bool& seen = given[static_cast<std::size_t>(known - keys.begin())];
         if (seen) return refuse(fmt::format("'{}' stands twice", key));
         seen = true;
-        if (const auto done = set(fault, key, pair.substr(equals + 1)); !done) return refuse(done.error());
+        const std::string_view word = pair.substr(equals + 1);
+        if (key == "axis" && names && has_name(word)) named = word;
+        else if (const auto done = set(fault, key, word); !done) return refuse(done.error());
         begin = end + 1;
     }
     if (const auto why = missing_or_superfluous(fault, given); !why.empty()) return refuse(why);
     if (const auto why = out_of_range(fault); !why.empty()) return refuse(why);
+    if (!named) return fault;
+    const auto axes = names(*named);
+    if (!axes) return refuse(axes.error());
+    fault.axes = *axes;
     return fault;
 }
 

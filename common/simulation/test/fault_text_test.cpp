@@ -21,6 +21,37 @@ TEST(FaultText, reads_the_fault_of_the_demo)
     EXPECT_EQ(fault->end_s, 18.0);
 }
 
+TEST(FaultText, takes_names_of_axes_from_whoever_knows_them)
+{
+    std::vector<std::string> asked;
+    const AxisNames names = [&](std::string_view text) -> tl::expected<AxisMask, std::string> {
+        asked.emplace_back(text);
+        if (text == "G2+3") return AxisMask{0b1010};
+        return tl::make_unexpected("no axis of this name");
+    };
+    const auto fault = parse_fault("kind=scale,axis=G2+3,value=0.8", names);
+    ASSERT_TRUE(fault) << fault.error();
+    EXPECT_EQ(fault->axes, 0b1010U);
+    EXPECT_EQ(fault->value, 0.8);
+    EXPECT_EQ(parse_fault("axis=G9,kind=zero", names).error(), "fault 'axis=G9,kind=zero': no axis of this name");
+    EXPECT_EQ(asked, (std::vector<std::string>{"G2+3", "G9"}));
+    EXPECT_THAT(parse_fault("axis=G2,kind=zero").error(), HasSubstr("0-based")) << "nobody knows names";
+}
+
+TEST(FaultText, asks_for_no_name_where_axes_are_numbers_or_anything_else_is_wrong)
+{
+    const AxisNames nobody = [](std::string_view text) -> tl::expected<AxisMask, std::string> {
+        ADD_FAILURE() << text;
+        return AxisMask{1};
+    };
+    EXPECT_EQ(parse_fault("axis=0+3,kind=stuck", nobody)->axes, 0b1001U);
+    EXPECT_THAT(parse_fault("axis=G2,kind=tired", nobody).error(), HasSubstr("unknown kind 'tired'"));
+    EXPECT_THAT(parse_fault("axis=G2,kind=zero,start=-1", nobody).error(), HasSubstr("start must be 0 s or later"));
+    EXPECT_THAT(parse_fault("axis=24,kind=zero", nobody).error(), HasSubstr("'24'"));
+    EXPECT_THAT(parse_fault("axis=-1,kind=zero", nobody).error(), HasSubstr("'-1'"));
+    EXPECT_THAT(parse_fault("axis=,kind=zero", nobody).error(), HasSubstr("0-based"));
+}
+
 TEST(FaultText, lasts_for_ever_from_the_beginning_unless_told_otherwise)
 {
     const auto fault = parse_fault("axis=0+3,kind=stuck");

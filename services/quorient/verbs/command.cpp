@@ -68,30 +68,12 @@ AxisMask chosen_axes(const BusOptions& options, const std::vector<std::string>& 
     return *axes;
 }
 
-simulation::FaultSpec parsed(const std::string& text, const std::string& as_typed)
+/// axis= takes names too.
+simulation::FaultSpec chosen_fault(const CommandOptions& options)
 {
-    auto fault = simulation::parse_fault(text);
-    if (fault) return std::move(*fault);
-    std::string problem = fault.error();
-    if (const auto place = problem.find(text); place != std::string::npos) problem.replace(place, text.size(), as_typed);
-    fail(problem);
-}
-
-/// axis= takes names too: all else is looked at first, so that no mistake waits for the unit.
-simulation::FaultSpec fault_with_axes(const CommandOptions& options)
-{
-    const std::string& text = options.fault;
-    const std::string key = "axis=";
-    const auto place = text.starts_with(key) ? 0 : text.find(',' + key);
-    if (place == std::string::npos) return parsed(text, text);
-    const auto begin = text.find('=', place) + 1;
-    const auto end = std::min(text.find(',', begin), text.size());
-    const auto words = axis_words(text.substr(begin, end - begin));
-    if (std::ranges::all_of(words, [](const std::string& word) { return word.empty() || is_axis_number(word) || word.starts_with('-'); }))
-        return parsed(text, text);
-    auto fault = parsed(std::string(text).replace(begin, end - begin, "0"), text);
-    fault.axes = chosen_axes(options.bus, words);
-    return fault;
+    auto fault = simulation::parse_fault(options.fault, [&](std::string_view text) { return chosen_axes(options.bus, axis_words(text)); });
+    if (!fault) fail(fault.error());
+    return std::move(*fault);
 }
 
 /// The axes of an instrument, which the running unit knows.
@@ -112,7 +94,7 @@ FaultCommand inject_command(const CommandOptions& options)
         return command;
     }
     if (options.fault.empty()) fail("nothing to do: give a fault, as in axis=1,kind=scale,value=0.8,start=0,end=10, or --clear");
-    const auto fault = fault_with_axes(options);
+    const auto fault = chosen_fault(options);
     return simulation::to_command(fault.instrument.empty() ? fault : fault_of_instrument(options, fault));
 }
 

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -27,9 +28,13 @@ struct FaultSpec {
     double period_s = 0;
 };
 
+/// The axes that a text with names stands for, as in `IMU3 y+2`.
+using AxisNames = std::function<tl::expected<AxisMask, std::string>(std::string_view text)>;
+
 /// Reads `key=value` pairs divided by commas. Keys: axis (0-based; several: 1+3), instrument, kind, value, start, end, frequency, period.
+/// @param names  what axis= holds beside numbers; asked last, when all else is right. Without it axes are numbers.
 /// @returns an error that names the offending word and lists the valid ones.
-tl::expected<FaultSpec, std::string> parse_fault(std::string_view text);
+tl::expected<FaultSpec, std::string> parse_fault(std::string_view text, const AxisNames& names = {});
 
 /// The text that parse_fault reads back.
 std::string to_string(const FaultSpec& fault);
