@@ -9,13 +9,9 @@
 namespace quorient::composition {
 
 /// The command line of `quorient-run`.
-struct Options {
-    std::string system_file;
+struct Options : runtime::SystemChoice {
     std::vector<std::string> names;  ///< processes of the system file
     std::string of;                  ///< in their place: the composition of the file that this process is in
-    std::optional<Vendor> dds;
-    std::optional<std::uint32_t> domain;
-    std::vector<std::string> set;  ///< values in place of the file's
 };
 
 /// Reads SYSTEM.yaml NAME… [--dds VENDOR] [--domain N] [--set KEY=VALUE …], or --of NAME in place of the names.

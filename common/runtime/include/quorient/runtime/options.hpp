@@ -10,13 +10,17 @@
 
 namespace quorient::runtime {
 
-/// The command line of every service.
-struct Options {
+/// The system file that a process is of, and what holds in place of the file.
+struct SystemChoice {
     std::string system_file;
-    std::string name;  ///< this process's in the system file
     std::optional<Vendor> dds;
     std::optional<std::uint32_t> domain;
     std::vector<std::string> set;  ///< values in place of the file's
+};
+
+/// The command line of every service.
+struct Options : SystemChoice {
+    std::string name;  ///< this process's in the system file
 };
 
 /// A flag of one service alone: given, it sets a value of the system file.
