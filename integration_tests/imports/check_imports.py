@@ -38,9 +38,11 @@ INNER = {
         "cli": set(),
         "report": {"cli"},
         "launch": {"cli", "report"},
-        "record": {"cli"},
+        "orders": {"cli"},
+        "record": {"cli", "report"},
         "replay": {"cli", "report"},
-        "verbs": {"cli", "launch", "record", "replay", "report"},
+        "vessel": {"cli"},
+        "verbs": {"cli", "launch", "orders", "record", "replay", "report", "vessel"},
     },
     "common/fdi/src": {
         "single_frame": set(),

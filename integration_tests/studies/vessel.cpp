@@ -1,7 +1,7 @@
 #include "quorient/fdi/fault_monitor.hpp"
 #include "quorient/fdi/observer_detector.hpp"
 #include "study.hpp"
-#include "verbs/vessel_input.hpp"
+#include "vessel/vessel_input.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -15,7 +15,7 @@ class EventOrder {
 public:
     struct Held {
         HealthEvent event;
-        std::string time;  ///< of the run, as it shall be shown
+        std::string time;  ///< in the run, as it shall be shown
         std::int64_t arrived_ns = 0;
     };
 

@@ -1,4 +1,4 @@
-#include "named_axes.hpp"
+#include "orders/named_axes.hpp"
 
 #include "quorient/messages/name.hpp"
 

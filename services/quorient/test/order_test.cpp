@@ -1,6 +1,6 @@
 // An order reaches each service that it concerns, also one that was not found, or not listening, when it was first sent.
 
-#include "order.hpp"
+#include "orders/order.hpp"
 
 #include "quorient/bus/local_bus.hpp"
 #include "quorient/bus/topics.hpp"

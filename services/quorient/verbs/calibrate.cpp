@@ -1,4 +1,4 @@
-#include "calibration_report.hpp"
+#include "report/calibration_report.hpp"
 #include "cli/cluster_input.hpp"
 #include "cli/program.hpp"
 #include "quorient/calibration/gated_terms.hpp"
@@ -7,7 +7,7 @@
 #include "cli/output_file.hpp"
 #include "cli/progress.hpp"
 #include "cli/system_options.hpp"
-#include "calibrate_live.hpp"
+#include "record/live_samples.hpp"
 #include "quorient/calibration/log_sample.hpp"
 #include "quorient/messages/name.hpp"
 #include "quorient/recording/merge.hpp"
@@ -148,7 +148,7 @@ void run(const CalibrateOptions& options)
 
 void add_calibrate(Program& program)
 {
-    auto verb = program.verb("calibrate", "What a recording tells of its gyros: bias, noise, axes, motion noise, limits.");
+    auto verb = program.verb("calibrate", "Finds bias, noise, axes, motion noise and limits of the gyros in a recording.");
     verb.footer(
         "From resting segments: biases, noise, Allan deviation; from motion about all three axes, with more than three axes:\n"
         "directions and gains. Without rest, biases and noise are those in which the axes disagree. From violent motion of three\n"

@@ -1,7 +1,7 @@
 // The verbs that give orders: inject, readmit and reset.
 
-#include "named_axes.hpp"
-#include "order.hpp"
+#include "orders/named_axes.hpp"
+#include "orders/order.hpp"
 #include "quorient/bus/topics.hpp"
 #include "quorient/geometry/sensor_cluster.hpp"
 #include "quorient/messages/codes.hpp"

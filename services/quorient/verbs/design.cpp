@@ -4,7 +4,7 @@
 #include "cli/parallel.hpp"
 #include "cli/program.hpp"
 #include "cli/progress.hpp"
-#include "design_input.hpp"
+#include "cli/design_input.hpp"
 #include "quorient/geometry/figures.hpp"
 #include "quorient/messages/units.hpp"
 #include "report/design_explain.hpp"

@@ -1,9 +1,9 @@
 #include "cli/program.hpp"
 #include "cli/json_output.hpp"
 #include "verbs.hpp"
-#include "vessel_plot.hpp"
-#include "vessel_run.hpp"
-#include "vessel_table.hpp"
+#include "vessel/vessel_plot.hpp"
+#include "vessel/vessel_run.hpp"
+#include "vessel/vessel_table.hpp"
 
 #include <fmt/format.h>
 #include <iostream>

@@ -1,4 +1,4 @@
-#include "calibrate_live.hpp"
+#include "live_samples.hpp"
 
 #include "cli/program.hpp"
 #include "cli/progress.hpp"

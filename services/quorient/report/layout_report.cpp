@@ -17,7 +17,7 @@ namespace quorient::cli {
 
 namespace {
 
-struct Report {
+struct LayoutFigures {
     geometry::Axes axes;
     std::vector<std::size_t> axis, instrument;
     geometry::Accuracy accuracy{Eigen::Vector3d::Constant(undefined), undefined, undefined, undefined};
@@ -28,9 +28,9 @@ struct Report {
     unsigned detectable = 0, isolable = 0;
 };
 
-Report report_on(const geometry::SensorCluster& cluster, AxisMask used)
+LayoutFigures report_on(const geometry::SensorCluster& cluster, AxisMask used)
 {
-    Report report;
+    LayoutFigures report;
     report.axes = geometry::select(cluster.axes, used);
     for (std::size_t axis = 0; axis < cluster.size(); ++axis)
         if (has_axis(used, axis)) {
@@ -72,7 +72,7 @@ void append_matrix(std::string& text, std::string_view title, const Eigen::Dense
 
 Json layout_json(const std::string& name, const geometry::SensorCluster& cluster, AxisMask used)
 {
-    const Report report = report_on(cluster, used);
+    const LayoutFigures report = report_on(cluster, used);
     Json json;
     json["name"] = name;
     json["axes"] = matrix_json(report.axes);
@@ -97,7 +97,7 @@ Json layout_json(const std::string& name, const geometry::SensorCluster& cluster
 
 std::string layout_text(const std::string& name, const geometry::SensorCluster& cluster, AxisMask used)
 {
-    const Report report = report_on(cluster, used);
+    const LayoutFigures report = report_on(cluster, used);
     std::string text = fmt::format("{}: {} axes\n", name, report.axes.rows());
     fmt::format_to(std::back_inserter(text), "{:>4} {:>10} {:>10}{:>10}{:>10}\n", "axis", "instrument", "x", "y", "z");
     for (std::size_t row = 0; row < report.axis.size(); ++row) {
