@@ -28,28 +28,28 @@ ImuAlignment::ImuAlignment(const system::Ros2SourceSettings& settings, SensorKin
       kind_(kind),
       interval_ns_(nanoseconds(interval_s)),
       skew_ns_(nanoseconds(settings.skew_s)),
-      heard_(settings.imus.size()),
+      received_(settings.imus.size()),
       instruments_(settings.imus.size())
 {
 }
 
-void ImuAlignment::blame(Heard& heard, Fault fault, std::int64_t arrival_ns) const
+void ImuAlignment::blame(Received& received, Fault fault, std::int64_t arrival_ns) const
 {
-    heard.fault = fault;
-    heard.faulty_until_ns = arrival_ns + 2 * skew_ns_;  // until the frames that it touches are out
+    received.fault = fault;
+    received.faulty_until_ns = arrival_ns + 2 * skew_ns_;  // until the frames that it touches are out
 }
 
 /// The rate; or the specific force, moved from the IMU's place to the body's origin: f_0 = f - alpha x r - omega x (omega x r).
-Eigen::Vector3d ImuAlignment::value_of(std::size_t imu, Heard& heard, const bus::ros2::Imu& message) const
+Eigen::Vector3d ImuAlignment::value_of(std::size_t imu, Received& received, const bus::ros2::Imu& message) const
 {
     const Eigen::Vector3d rate(message.rate_rad_s[0], message.rate_rad_s[1], message.rate_rad_s[2]);
     if (kind_ != SensorKind::accelerometer) return rate;
     const Eigen::Vector3d force(message.acceleration_m_s2[0], message.acceleration_m_s2[1], message.acceleration_m_s2[2]);
-    const double since_s = static_cast<double>(message.stamp_ns - heard.rate_stamp_ns) * 1e-9;
+    const double since_s = static_cast<double>(message.stamp_ns - received.rate_stamp_ns) * 1e-9;
     const Eigen::Vector3d alpha =
-        heard.rate_stamp_ns != 0 && since_s > 0 ? Eigen::Vector3d((rate - heard.rate_rad_s) / since_s) : Eigen::Vector3d::Zero();
-    heard.rate_rad_s = rate;
-    heard.rate_stamp_ns = message.stamp_ns;
+        received.rate_stamp_ns != 0 && since_s > 0 ? Eigen::Vector3d((rate - received.rate_rad_s) / since_s) : Eigen::Vector3d::Zero();
+    received.rate_rad_s = rate;
+    received.rate_stamp_ns = message.stamp_ns;
     const auto& place = settings_.imus[imu];
     const Eigen::Vector3d arm = place.mounting.transpose() * place.position_m;  // in the IMU's frame
     return force - alpha.cross(arm) - rate.cross(rate.cross(arm));
@@ -57,24 +57,24 @@ Eigen::Vector3d ImuAlignment::value_of(std::size_t imu, Heard& heard, const bus:
 
 void ImuAlignment::add(std::size_t imu, const bus::ros2::Imu& message, std::int64_t arrival_ns, std::uint32_t publishers)
 {
-    auto& heard = heard_[imu];
-    if (heard.first_arrival_ns == 0) heard.first_arrival_ns = arrival_ns;
-    const bool again = message.stamp_ns == heard.stamp_ns;
-    heard.stamp_ns = message.stamp_ns;
-    heard.offset_ns = message.stamp_ns - arrival_ns;
-    heard.arrival_ns = arrival_ns;
-    if (publishers > 1 || again) return blame(heard, Fault::duplicated, arrival_ns);
-    if (offset_ns_ && std::abs(heard.offset_ns - *offset_ns_) > skew_ns_) return blame(heard, Fault::skewed, arrival_ns);
-    const ImuSample sample{message.stamp_ns, value_of(imu, heard, message)};
-    if (!sample.value.allFinite()) return blame(heard, Fault::not_finite, arrival_ns);
-    if (!heard.stream.add(sample)) blame(heard, Fault::disordered, arrival_ns);
+    auto& received = received_[imu];
+    if (received.first_arrival_ns == 0) received.first_arrival_ns = arrival_ns;
+    const bool again = message.stamp_ns == received.stamp_ns;
+    received.stamp_ns = message.stamp_ns;
+    received.offset_ns = message.stamp_ns - arrival_ns;
+    received.arrival_ns = arrival_ns;
+    if (publishers > 1 || again) return blame(received, Fault::duplicated, arrival_ns);
+    if (offset_ns_ && std::abs(received.offset_ns - *offset_ns_) > skew_ns_) return blame(received, Fault::skewed, arrival_ns);
+    const ImuSample sample{message.stamp_ns, value_of(imu, received, message)};
+    if (!sample.value.allFinite()) return blame(received, Fault::not_finite, arrival_ns);
+    if (!received.stream.add(sample)) blame(received, Fault::disordered, arrival_ns);
 }
 
 bool ImuAlignment::ready(std::int64_t now_ns) const
 {
-    const auto heard_for = [&](const Heard& heard) { return heard.first_arrival_ns == 0 ? -1 : now_ns - heard.first_arrival_ns; };
-    return std::ranges::all_of(heard_, [&](const Heard& heard) { return heard_for(heard) > 2 * skew_ns_; }) ||
-           std::ranges::any_of(heard_, [&](const Heard& heard) { return heard_for(heard) > second_ns; });
+    const auto received_for = [&](const Received& received) { return received.first_arrival_ns == 0 ? -1 : now_ns - received.first_arrival_ns; };
+    return std::ranges::all_of(received_, [&](const Received& received) { return received_for(received) > 2 * skew_ns_; }) ||
+           std::ranges::any_of(received_, [&](const Received& received) { return received_for(received) > second_ns; });
 }
 
 /// The median; with an even number, the middle one that is nearer to the clock so far: one of two that jumps does not take the clock with it.
@@ -82,8 +82,8 @@ std::optional<std::int64_t> ImuAlignment::median_offset(std::int64_t now_ns) con
 {
     std::array<std::int64_t, max_axes> offsets{};
     std::size_t count = 0;
-    for (const auto& heard : heard_) {
-        if (heard.first_arrival_ns != 0 && now_ns - heard.arrival_ns < fresh_ns) offsets[count++] = heard.offset_ns;
+    for (const auto& received : received_) {
+        if (received.first_arrival_ns != 0 && now_ns - received.arrival_ns < fresh_ns) offsets[count++] = received.offset_ns;
     }
     if (count == 0) return std::nullopt;
     std::sort(offsets.begin(), offsets.begin() + static_cast<std::ptrdiff_t>(count));
@@ -111,7 +111,7 @@ void ImuAlignment::follow_clock(std::int64_t now_ns)
         end_ns_ = now_ns + *offset_ns_ - skew_ns_ - interval_ns_;
         stepped_since_ns_ = 0;
         ++clock_steps_;
-        for (auto& heard : heard_) heard.stream.clear();
+        for (auto& received : received_) received.stream.clear();
         return;
     }
     const auto slew = std::clamp(error, -interval_ns_ / slew_divisor, interval_ns_ / slew_divisor);
@@ -126,14 +126,14 @@ void ImuAlignment::advance(std::int64_t now_ns)
     follow_clock(now_ns);
     end_ns_ += interval_ns_;
     if (clock_steps_ != steps) begin_ns_ = end_ns_ - interval_ns_;
-    for (std::size_t imu = 0; imu < heard_.size(); ++imu) {
-        const auto& heard = heard_[imu];
+    for (std::size_t imu = 0; imu < received_.size(); ++imu) {
+        const auto& received = received_[imu];
         auto& instrument = instruments_[imu];
-        const bool faulty = now_ns < heard.faulty_until_ns;
-        const bool whole = heard.stream.integrate(begin_ns_, end_ns_, skew_ns_, instrument.increment);
+        const bool faulty = now_ns < received.faulty_until_ns;
+        const bool whole = received.stream.integrate(begin_ns_, end_ns_, skew_ns_, instrument.increment);
         const bool finite = instrument.increment.allFinite();  // large numbers overflow in sums and differences
         instrument.valid = !faulty && whole && finite;
-        instrument.fault = instrument.valid ? Fault::none : faulty ? heard.fault : whole ? Fault::not_finite : Fault::silent;
+        instrument.fault = instrument.valid ? Fault::none : faulty ? received.fault : whole ? Fault::not_finite : Fault::silent;
     }
 }
 

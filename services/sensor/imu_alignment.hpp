@@ -49,7 +49,7 @@ public:
     std::uint64_t clock_steps() const { return clock_steps_; }
 
 private:
-    struct Heard {
+    struct Received {
         ImuStream stream;
         Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  ///< the newest sample's, for the lever arm
         std::int64_t rate_stamp_ns = 0;
@@ -61,16 +61,16 @@ private:
         Fault fault = Fault::none;
     };
 
-    Eigen::Vector3d value_of(std::size_t imu, Heard& heard, const bus::ros2::Imu& message) const;
+    Eigen::Vector3d value_of(std::size_t imu, Received& received, const bus::ros2::Imu& message) const;
     std::optional<std::int64_t> median_offset(std::int64_t now_ns) const;
     void follow_clock(std::int64_t now_ns);
-    void blame(Heard& heard, Fault fault, std::int64_t arrival_ns) const;
+    void blame(Received& received, Fault fault, std::int64_t arrival_ns) const;
 
     system::Ros2SourceSettings settings_;
     SensorKind kind_;
     std::int64_t interval_ns_;
     std::int64_t skew_ns_;
-    std::vector<Heard> heard_;
+    std::vector<Received> received_;
     std::vector<Instrument> instruments_;
     std::optional<std::int64_t> offset_ns_;  ///< common clock - steady clock
     std::int64_t begin_ns_ = 0;

@@ -56,11 +56,11 @@ public:
         clock_ = &loop.clock();
         attached_ns_ = clock_->steady_ns();
         subscriptions_.resize(settings_.imus.size());
-        heard_.resize(settings_.imus.size());
+        received_.resize(settings_.imus.size());
         for (std::size_t imu = 0; imu < settings_.imus.size(); ++imu) {
             const auto topic = bus::ros2::imu(settings_.imus[imu].topic.c_str(), bus::ros2::requested);
             subscriptions_[imu] = &loop.on(bus.subscribe(topic), [this, imu](const bus::ros2::Imu& message) {
-                heard_[imu] = true;
+                received_[imu] = true;
                 alignment_.add(imu, message, clock_->steady_ns(), subscriptions_[imu]->status().matched);
             });
         }
@@ -114,7 +114,7 @@ private:
     enum class Topic : std::uint8_t {
         awaited,  ///< nothing was said yet
         missed,   ///< its silence was reported
-        heard,    ///< messages come, or came
+        received,    ///< messages come, or came
     };
 
     AxisMask axes_of(std::size_t imu) const
@@ -169,11 +169,11 @@ private:
     std::optional<Notice> topic_notice(std::size_t imu)
     {
         auto& topic = topics_[imu];
-        if (topic == Topic::heard || subscriptions_.empty()) return std::nullopt;
+        if (topic == Topic::received || subscriptions_.empty()) return std::nullopt;
         const auto shown = ros_name(settings_.imus[imu].topic);
-        if (heard_[imu]) {
+        if (received_[imu]) {
             const bool was_missed = topic == Topic::missed;
-            topic = Topic::heard;
+            topic = Topic::received;
             if (!was_missed) return std::nullopt;
             return Notice{Severity::info, axes_of(imu), fmt::format("{}: {} is published now", settings_.imus[imu].name, shown), EventCode::no_match};
         }
@@ -243,7 +243,7 @@ private:
     std::deque<Notice> learned_;  ///< at the start, not reported yet
     std::vector<ImuAlignment::Fault> reported_;
     std::vector<Topic> topics_;  ///< for each IMU
-    std::vector<bool> heard_;    ///< for each IMU: whether a message came
+    std::vector<bool> received_;    ///< for each IMU: whether a message came
     std::vector<bus::Subscription<bus::ros2::Imu>*> subscriptions_;
     std::uint32_t domain_;
     std::int64_t attached_ns_ = 0;

@@ -125,7 +125,7 @@ std::int64_t HostTime::of(const VotedAttitude& voted, std::int64_t wall_now_ns)
 }
 
 void to_diagnostics(const VotedAttitude& voted, const ClusterDescription* description, const std::vector<voting::LaneSettings>& lanes,
-                    const std::vector<VoterHeard>& voters, DiagnosticArray& array)
+                    const std::vector<VoterPresence>& voters, DiagnosticArray& array)
 {
     array.count = 0;
     auto* own = next(array, voted.unit, "attitude", diagnostic_level(level_of(voted)), to_string(level_of(voted)));
@@ -134,10 +134,10 @@ void to_diagnostics(const VotedAttitude& voted, const ClusterDescription* descri
     add(own, "lanes' spread [rad]", fmt::format("{:.3g}", voted.spread_rad));
     add(own, "frame", std::to_string(voted.sequence));
     add(own, "output", std::to_string(voted.output_sequence));
-    for (const auto& heard : voters) {
-        const auto name = fmt::format("voter {}", heard.voter);
-        if (heard.voter == voted.voter) next(array, voted.unit, name, Level::ok, "owns the output");
-        else next(array, voted.unit, name, heard.alive ? Level::ok : Level::error, heard.alive ? "stands by" : "silent");
+    for (const auto& presence : voters) {
+        const auto name = fmt::format("voter {}", presence.voter);
+        if (presence.voter == voted.voter) next(array, voted.unit, name, Level::ok, "owns the output");
+        else next(array, voted.unit, name, presence.alive ? Level::ok : Level::error, presence.alive ? "stands by" : "silent");
     }
     add_lanes(voted, lanes, array);
     if (description) add_axes(voted, *description, array);

@@ -33,13 +33,13 @@ private:
 };
 
 /// A voter, as the others receive it.
-struct VoterHeard {
+struct VoterPresence {
     std::uint32_t voter = 0;
     bool alive = false;
 };
 
 /// One status per axis, lane and voter; what does not fit is left out from the end.
 void to_diagnostics(const VotedAttitude& voted, const ClusterDescription* description, const std::vector<voting::LaneSettings>& lanes,
-                    const std::vector<VoterHeard>& voters, bus::ros2::DiagnosticArray& array);
+                    const std::vector<VoterPresence>& voters, bus::ros2::DiagnosticArray& array);
 
 }  // namespace quorient::voter

@@ -36,7 +36,7 @@ void Ros2Output::on_output(const VotedAttitude& output)
 {
     if (output.unit != voting_.unit) return;
     for (auto& other : others_) {
-        if (other.voter == output.voter) other.heard_ns = loop_.clock().steady_ns();
+        if (other.voter == output.voter) other.received_ns = loop_.clock().steady_ns();
     }
 }
 
@@ -65,8 +65,8 @@ void Ros2Output::publish_diagnostics()
 {
     const auto now = loop_.clock().steady_ns();
     if (owned_ns_ == 0 || now - owned_ns_ > diagnostics_period_ns) return;
-    std::vector<VoterHeard> voters;
-    for (const auto& other : others_) voters.push_back({other.voter, other.heard_ns != 0 && now - other.heard_ns < diagnostics_period_ns});
+    std::vector<VoterPresence> voters;
+    for (const auto& other : others_) voters.push_back({other.voter, other.received_ns != 0 && now - other.received_ns < diagnostics_period_ns});
     to_diagnostics(last_, description_ ? &*description_ : nullptr, voting_.lanes, voters, array_);
     array_.stamp_ns = loop_.clock().wall_ns();
     diagnostics_.publish(array_);

@@ -19,7 +19,7 @@ public:
 private:
     struct Other {
         std::uint32_t voter;
-        std::int64_t heard_ns;
+        std::int64_t received_ns;
     };
 
     void on_voted(const VotedAttitude& voted);

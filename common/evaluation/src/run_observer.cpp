@@ -152,7 +152,7 @@ void RunObserver::on_attitude(const AttitudeState& attitude)
     auto* lane = attitude.unit == system_.unit ? lane_of(attitude.lane) : nullptr;
     if (!lane) return;
     lane->attitude = attitude;
-    lane->heard = true;
+    lane->received = true;
     ++lane->frames;
     lane->largest_roll_back = std::max<std::uint64_t>(lane->largest_roll_back, attitude.rolled_back_frames);
     if (attitude.isolated_mask != 0 && lane->triad_after == 0) lane->triad_after = attitude.used_mask;
@@ -165,8 +165,8 @@ void RunObserver::on_voted(const VotedAttitude& voted)
     auto& last = output_sequences_[voted.voter];
     if (last != 0 && voted.output_sequence <= last) ++voted_.disordered;
     last = voted.output_sequence;
-    if (!voted_.heard || identity_of(voted) >= identity_of(voted_.latest)) voted_.latest = voted;
-    voted_.heard = true;
+    if (!voted_.received || identity_of(voted) >= identity_of(voted_.latest)) voted_.latest = voted;
+    voted_.received = true;
     const bool held = level_of(voted) == VoteLevel::coasting || level_of(voted) == VoteLevel::lost;
     if (held) return;
     voted_.frame_level = level_of(voted);

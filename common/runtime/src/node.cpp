@@ -240,7 +240,7 @@ void Node::look_at_shared_memory()
     if (reported_shared_memory_lost_ || !bus_.shared_memory_lost()) return;
     reported_shared_memory_lost_ = true;
     report(EventCode::shared_memory_lost, Severity::warning_high, {status_.epoch, status_.sequence}, 0,
-           "iceoryx's daemon is gone or another one: who starts from now on shares no memory with this process");
+           "iceoryx's daemon is gone or another one: what starts from now on shares no memory with this process");
 }
 
 /// Warns at the start and once a day.

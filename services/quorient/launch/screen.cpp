@@ -40,7 +40,7 @@ std::string trouble_of(const system::System& system, const evaluation::RunObserv
         return lane.verdict.suspect_mask != 0 ? fmt::format("{} {}", to_string(state), run.names_of(lane.verdict.suspect_mask))
                                               : std::string(to_string(state));
     const auto& voted = run.voted().latest;
-    if (!run.voted().heard || system.voters.empty())
+    if (!run.voted().received || system.voters.empty())
         return lane.verdict.isolated_mask == 0 ? "" : fmt::format("isolated {}", run.names_of(lane.verdict.isolated_mask));
     if (exclusion_of(voted, place) != LaneExclusion::none) return fmt::format("not counted by the voter: {}", to_string(exclusion_of(voted, place)));
     if (lane.verdict.isolated_mask == voted.isolated_mask) return "";
@@ -131,7 +131,7 @@ std::string Screen::standing(std::int64_t now_ns) const
 {
     report::Standing standing;
     standing.description = run_.description();
-    if (run_.voted().heard) {
+    if (run_.voted().received) {
         standing.voted = run_.voted().latest;
         const auto owner = system_.unit * system::services_per_unit + system::first_voter_service + standing.voted->voter - 1;
         if (level_voter_ == owner) standing.level_since_ns = level_since_ns_;

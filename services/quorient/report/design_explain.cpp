@@ -185,7 +185,7 @@ void append_two_failures(std::string& text, const Figures& figures, std::size_t 
                    "  in one direction as in another.\n",
                    std::sqrt(after.trace), std::sqrt(after.trace / figures.trace), after.condition);
     text += after_failures(figures);
-    if (figures.isolable >= 2) text += "  Two failures in the same moment are told whatever their sizes.\n";
+    if (figures.isolable >= 2) text += "  Two failures in the same moment are isolated whatever their sizes.\n";
     else text += "  Two failures in the same moment may look like two others: the answer is then a list of candidates.\n";
 }
 

@@ -38,13 +38,13 @@ struct StatusOptions {
 };
 
 /// Status comes twice a second: two samples of a service give its rate.
-struct Heard : report::Interval {
-    std::int64_t first_heard_ns = 0;  ///< steady
-    std::int64_t heard_ns = 0;
+struct ReceivedService : report::Interval {
+    std::int64_t first_received_ns = 0;  ///< steady
+    std::int64_t received_ns = 0;
     bool begins_next = false;  ///< with the next status a new interval begins; until then the last one stands
 };
 
-using Services = std::map<std::uint32_t, Heard>;
+using Services = std::map<std::uint32_t, ReceivedService>;
 
 /// One more than the place in the system's list.
 std::uint32_t number_of(const ServiceStatus& status, std::uint32_t first_service)
@@ -54,11 +54,11 @@ std::uint32_t number_of(const ServiceStatus& status, std::uint32_t first_service
 
 void name_services(const Services& services, report::Standing& standing)
 {
-    for (const auto& [id, heard] : services) {
-        const std::string name{text_of(heard.latest.name)};
-        if (role_of(heard.latest) == ServiceRole::voter) standing.voters[number_of(heard.latest, system::first_voter_service)] = name;
-        if (role_of(heard.latest) == ServiceRole::detector)
-            standing.lanes[number_of(heard.latest, system::first_detector_service)] = name.starts_with("fdi-") ? name.substr(4) : name;
+    for (const auto& [id, service] : services) {
+        const std::string name{text_of(service.latest.name)};
+        if (role_of(service.latest) == ServiceRole::voter) standing.voters[number_of(service.latest, system::first_voter_service)] = name;
+        if (role_of(service.latest) == ServiceRole::detector)
+            standing.lanes[number_of(service.latest, system::first_detector_service)] = name.starts_with("fdi-") ? name.substr(4) : name;
     }
 }
 
@@ -75,11 +75,11 @@ void print_services(const Services& services)
 {
     fmt::print("{:<14}{:<12}{:<10}{:<12}{:<10}{:>9}{:>11}{:>11}{:>8}{:>8}{:>9}{:>10}\n", "service", "role", "state", "vendor", "transport",
                "rate/Hz", "p50/us", "p99/us", "gaps", "late", "foreign", "rejected");
-    for (const auto& [id, heard] : services) {
-        const auto& status = heard.latest;
+    for (const auto& [id, service] : services) {
+        const auto& status = service.latest;
         fmt::print("{:<14}{:<12}{:<10}{:<12}{:<10}{:>9}{:>11.0f}{:>11.0f}{:>8}{:>8}{:>9}{:>10}\n", text_of(status.name),
                    to_string(role_of(status)), to_string(state_of(status)), bus::to_string(vendor_of(status)),
-                   bus::to_string(transport_of(status)), heard.is_measured() ? fmt::format("{:.1f}", heard.rate_hz()) : "-",
+                   bus::to_string(transport_of(status)), service.is_measured() ? fmt::format("{:.1f}", service.rate_hz()) : "-",
                    status.latency_s[0] * 1e6, status.latency_s[2] * 1e6, status.gaps, status.late, status.foreign, status.rejected);
     }
 }
@@ -118,10 +118,10 @@ struct Received {
             });
         };
         take(bus::topics::status, [this, now](const ServiceStatus& sample) {
-            auto& its = services.try_emplace(sample.service, Heard{{sample, sample}, now()}).first->second;
+            auto& its = services.try_emplace(sample.service, ReceivedService{{sample, sample}, now()}).first->second;
             if (std::exchange(its.begins_next, false)) its.first = its.latest;
             its.latest = sample;
-            its.heard_ns = now();
+            its.received_ns = now();
         });
         take(bus::topics::event, [this](const HealthEvent& event) {
             if (events.size() == most_events) events.erase(events.begin());
@@ -141,9 +141,9 @@ struct Received {
     /// Rates are those since the call before.
     void begin_next(std::int64_t now_ns)
     {
-        const auto is_silent = [now_ns](std::int64_t heard_ns) { return now_ns - heard_ns > silence_ns; };
-        std::erase_if(services, [&](const auto& entry) { return is_silent(entry.second.heard_ns); });
-        for (auto& [id, heard] : services) heard.begins_next = true;
+        const auto is_silent = [now_ns](std::int64_t received_ns) { return now_ns - received_ns > silence_ns; };
+        std::erase_if(services, [&](const auto& entry) { return is_silent(entry.second.received_ns); });
+        for (auto& [id, service] : services) service.begins_next = true;
         if (standing.voted && is_silent(voted_ns)) standing.voted.reset();
         std::erase_if(standing.verdicts, [&](const auto& entry) { return is_silent(verdict_ns[entry.first]); });
     }
@@ -152,7 +152,7 @@ struct Received {
     bool output_is_due(std::int64_t now_ns) const
     {
         return std::ranges::any_of(services, [now_ns](const auto& entry) {
-            return role_of(entry.second.latest) == ServiceRole::voter && now_ns - entry.second.first_heard_ns >= discovery_ns;
+            return role_of(entry.second.latest) == ServiceRole::voter && now_ns - entry.second.first_received_ns >= discovery_ns;
         });
     }
 
@@ -163,7 +163,7 @@ struct Received {
 std::vector<report::Starving> starving_of(const Received& received)
 {
     std::vector<report::Interval> services;
-    for (const auto& [id, heard] : received.services) services.push_back(heard);
+    for (const auto& [id, service] : received.services) services.push_back(service);
     return report::find_starving(services, received.events);
 }
 
@@ -178,7 +178,7 @@ void print(const Received& received, const StatusOptions& options, std::int64_t 
                  {"starving", report::starving_json(starving_of(received))},
                  {"services", Json::array()},
                  {"events", Json::array()}};
-    for (const auto& [id, heard] : received.services) json["services"].push_back(message_json(heard.latest));
+    for (const auto& [id, service] : received.services) json["services"].push_back(message_json(service.latest));
     for (const auto& event : received.events) json["events"].push_back(message_json(event));
     fmt::print("{}\n", dump(json));
 }
@@ -220,7 +220,7 @@ int status(const StatusOptions& options)
 void add_status(Program& program)
 {
     auto verb = program.verb(
-        "status", "Whether the attitude is good, and why; who is alive, on which transport, at which rate and latency; the latest events");
+        "status", "Whether the attitude is good, and why; which services run, on which transport, at which rate and latency; the latest events");
     auto options = std::make_shared<StatusOptions>();
     options->bus.add_to(verb);
     verb.option("--seconds", options->seconds, "How long to listen; with --watch, how often to show")

@@ -157,7 +157,7 @@ TEST(Ros2Diagnostics, do_not_overflow_with_what_a_foreign_publisher_describes)
     described.axis_count = 255;
     described.instrument.fill(255);
     DiagnosticArray array;
-    to_diagnostics(voted(), &described, std::vector<voting::LaneSettings>(8), std::vector<VoterHeard>(40), array);
+    to_diagnostics(voted(), &described, std::vector<voting::LaneSettings>(8), std::vector<VoterPresence>(40), array);
     EXPECT_EQ(array.count, array.status.size());
 }
 

@@ -39,7 +39,7 @@ struct LaneRecord {
     FaultVerdict verdict;
     FaultDiagnosis diagnosis;  ///< the latest
     AttitudeState attitude;
-    bool heard = false;
+    bool received = false;
     std::optional<Identity> isolated_at;  ///< first verdict that isolated anything after the truth's fault began
     AxisMask isolated_first = 0;
     AxisMask isolated_ever = 0;
@@ -55,7 +55,7 @@ struct LaneRecord {
 
 struct VotedRecord {
     VotedAttitude latest;
-    bool heard = false;
+    bool received = false;
     VoteLevel frame_level = VoteLevel::unknown;  ///< the level at the latest attitude that came from a frame, neither held nor lost
     std::uint64_t frames = 0;      ///< distinct identities
     std::uint64_t disordered = 0;  ///< output_sequence that did not increase, of one voter
