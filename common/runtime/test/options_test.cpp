@@ -75,6 +75,7 @@ TEST(ServiceOptions, with_a_mistake_end_with_2_and_the_reason)
     expect_refused({"demo.yaml", "--name", "fdi-a", "--dds", "opensplice"}, "opensplice");
     expect_refused({"demo.yaml", "--name", "fdi-a", "--domain", "seven"}, "seven");
     expect_refused({"demo.yaml", "--name", "fdi-a", "--nmae", "x"}, "--nmae");
+    expect_refused({"--name", "fdi-a", "--set", "a=1", "b=2", "demo.yaml"}, "demo.yaml");  // each --set takes one value
 }
 
 TEST(ServiceOptions, help_and_version_end_with_0)
