@@ -28,7 +28,7 @@ void DiagnosisOutput::update(const fdi::FaultMonitor& monitor, const ClusterDesc
 {
     FaultDiagnosis now = monitor.diagnosis();
     now.detector = detector_;
-    tell_changes(now, description);
+    report_changes(now, description);
     latest_ = now;
     if (!is_due(now)) return;
     output_.publish(now);
@@ -43,7 +43,7 @@ bool DiagnosisOutput::is_due(const FaultDiagnosis& now) const
     return changed || (says_anything(now) && now.sample_time_ns - published_.sample_time_ns >= period_ns);
 }
 
-void DiagnosisOutput::tell_changes(const FaultDiagnosis& now, const ClusterDescription& description)
+void DiagnosisOutput::report_changes(const FaultDiagnosis& now, const ClusterDescription& description)
 {
     const Identity identity{now.epoch, now.sequence};
     const AxisMask silent = now.absent_mask & ~latest_.absent_mask;

@@ -20,7 +20,7 @@ public:
 
 private:
     bool is_due(const FaultDiagnosis& now) const;
-    void tell_changes(const FaultDiagnosis& now, const ClusterDescription& description);
+    void report_changes(const FaultDiagnosis& now, const ClusterDescription& description);
 
     bus::Publisher<FaultDiagnosis> output_;
     runtime::Node& node_;

@@ -17,10 +17,10 @@ public:
     {
         for (LaneIndex lane = 0; lane < paper.lanes; ++lane) {
             if (paper.sample[lane] == nullptr) continue;
-            ballot_.heard |= lane_bit(lane);
+            ballot_.sampled |= lane_bit(lane);
             if (paper.sample[lane]->seeded != 0) ballot_.seeded |= lane_bit(lane);
         }
-        eligible_ = most_trusted(ballot_.heard & ~paper.blocked);
+        eligible_ = most_trusted(ballot_.sampled & ~paper.blocked);
         ballot_.sigma_limit = median_sigma();
     }
 
@@ -39,7 +39,7 @@ public:
         ballot_.primary = primary;
         ballot_.left_out = left_out_mask(*paper_.sample[primary]);
         for (LaneIndex lane = 0; lane < paper_.lanes; ++lane) {
-            if (!has_lane(ballot_.heard, lane)) continue;
+            if (!has_lane(ballot_.sampled, lane)) continue;
             count_vote(ballot_, lane, *paper_.sample[lane], *paper_.sample[primary], !has_lane(paper_.blocked, lane), agreement_);
         }
         ballot_.backed = is_majority(ballot_.vouching);
@@ -110,7 +110,7 @@ private:
         LaneMask lanes = lane_bit(lane);
         const AttitudeState& own = *paper_.sample[lane];
         for (LaneIndex other = 0; other < paper_.lanes; ++other) {
-            if (other == lane || !has_lane(ballot_.heard, other)) continue;
+            if (other == lane || !has_lane(ballot_.sampled, other)) continue;
             if (agreement_.agree(lane, own, other, *paper_.sample[other], ballot_.sigma_limit)) lanes |= lane_bit(other);
         }
         return lanes;
@@ -213,7 +213,7 @@ bool is_majority(LaneMask lanes, LaneMask seeded, bool unseeded_remain, std::siz
 void count_vote(Ballot& ballot, LaneIndex lane, const AttitudeState& sample, const AttitudeState& primary, bool may_vouch,
                 const Agreement& agreement)
 {
-    ballot.heard |= lane_bit(lane);
+    ballot.sampled |= lane_bit(lane);
     if (sample.seeded != 0) ballot.seeded |= lane_bit(lane);
     if (lane != *ballot.primary && !agreement.agree(lane, sample, *ballot.primary, primary, ballot.sigma_limit)) return;
     ballot.agreeing |= lane_bit(lane);

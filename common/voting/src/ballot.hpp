@@ -50,7 +50,7 @@ struct Ballot {
     bool several_groups = false;       ///< the lanes have isolated different axes
     AxisMask isolated = 0;             ///< by the winning group
     AxisMask left_out = 0;             ///< by the primary: isolated, and left out provisionally
-    LaneMask heard = 0;                ///< lanes with a countable sample
+    LaneMask sampled = 0;              ///< lanes with a countable sample
     LaneMask agreeing = 0;             ///< all of these that agree with the primary
     LaneMask vouching = 0;             ///< all of these that are not excluded
     LaneMask seeded = 0;               ///< lanes with a countable sample that took over a voted attitude

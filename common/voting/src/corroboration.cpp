@@ -35,8 +35,8 @@ bool Corroboration::on_verdict(std::size_t lane, const FaultVerdict& verdict, Id
 {
     Voice& voice = voice_[lane];
     const Identity identity = identity_of(verdict);
-    const bool strays = voice.heard && voice.identity.epoch != newest.epoch && identity.epoch == newest.epoch;
-    if (voice.heard && identity <= voice.identity && !strays) return false;
+    const bool strays = voice.received && voice.identity.epoch != newest.epoch && identity.epoch == newest.epoch;
+    if (voice.received && identity <= voice.identity && !strays) return false;
     if (newest.epoch == identity.epoch && identity.sequence > newest.sequence + frame_window) return false;
 
     const bool trouble = sees_trouble(verdict);
@@ -45,8 +45,8 @@ bool Corroboration::on_verdict(std::size_t lane, const FaultVerdict& verdict, Id
     const AxisMask provisional = left_out_mask(verdict) & ~verdict.isolated_mask & all;
     const bool onset = (trouble && !voice.troubled) || isolated != voice.isolated || (provisional & ~voice.provisional) != 0;
     voice.identity = identity;
-    voice.heard_ns = now_ns;
-    voice.heard = true;
+    voice.received_ns = now_ns;
+    voice.received = true;
     voice.troubled = trouble;
     voice.isolated = isolated;
     voice.provisional = provisional;

@@ -56,14 +56,14 @@ public:
 private:
     struct Voice {
         Identity identity;
-        std::int64_t heard_ns = 0;
+        std::int64_t received_ns = 0;
         std::uint64_t opened_at = 0;  ///< frame at which this lane alone last opened the settle time
         AxisMask isolated = 0;        ///< by the verdict
         AxisMask suspected = 0;       ///< by the verdict, or candidates
         AxisMask provisional = 0;     ///< left out by the verdict and not isolated
         AxisMask applied = 0;         ///< isolated by the lane's attitude
         AxisMask doubted = 0;         ///< suspected by the lane's attitude, or left out and not isolated
-        bool heard = false;
+        bool received = false;
         bool troubled = false;
         bool exhausted = false;
         bool opened_once = false;
@@ -71,7 +71,7 @@ private:
 
     AxisMask reported(const Voice& voice, std::int64_t now_ns) const;
     void open(Voice& voice, Identity identity, AxisMask axes, std::int64_t now_ns);
-    bool fresh(const Voice& voice, std::int64_t now_ns) const { return voice.heard && now_ns - voice.heard_ns <= silence_ns_; }
+    bool fresh(const Voice& voice, std::int64_t now_ns) const { return voice.received && now_ns - voice.received_ns <= silence_ns_; }
 
     std::array<Voice, max_lanes> voice_{};
     std::size_t lanes_;

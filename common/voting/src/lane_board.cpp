@@ -59,7 +59,7 @@ std::int64_t LaneBoard::silence_deadline_ns(const Timeline& timeline, std::int64
 std::optional<std::uint64_t> LaneBoard::owed_frame(LaneIndex index, const Timeline& timeline) const
 {
     const LaneTracker& lane = lanes_[index];
-    const bool in_epoch = lane.heard() && lane.newest().epoch == timeline.epoch();
+    const bool in_epoch = lane.has_sample() && lane.newest().epoch == timeline.epoch();
     return timeline.next_open(in_epoch ? lane.newest().sequence + 1 : 0);
 }
 
@@ -69,7 +69,7 @@ void LaneBoard::release_last_resort(const Timeline& timeline)
     for (LaneIndex index = 0; index < lanes_.size(); ++index) {
         LaneTracker& lane = lanes_[index];
         const bool may_return = lane.latched() == LaneExclusion::silent || lane.latched() == LaneExclusion::invalid;
-        const bool delivers = lane.heard() && lane.is_past(timeline.identity(timeline.next())) && is_countable(lane.newest());
+        const bool delivers = lane.has_sample() && lane.is_past(timeline.identity(timeline.next())) && is_countable(lane.newest());
         if (!may_return || !delivers) continue;
         lane.release();
         narrator_.returned(identity_of(lane.newest()), index, "no other lane is left");
@@ -82,11 +82,11 @@ void LaneBoard::publish(Identity identity, const Ballot& ballot, bool unseeded_r
     Record& made = record(0);
     made = {identity, ballot, unseeded_remain, true};
     for (LaneIndex a = 0; a < lanes_.size(); ++a) {
-        if (!has_lane(ballot.heard, a)) continue;
+        if (!has_lane(ballot.sampled, a)) continue;
         const AttitudeState& sample = *lanes_[a].at(identity);
         if (a == *ballot.primary || &sample == &lanes_[a].newest()) label(a, sample, made, now_ns);
         for (LaneIndex b = a + 1; b < lanes_.size(); ++b) {
-            if (has_lane(ballot.heard, b)) agreement_.remember(a, sample, b, *lanes_[b].at(identity), ballot.sigma_limit);
+            if (has_lane(ballot.sampled, b)) agreement_.remember(a, sample, b, *lanes_[b].at(identity), ballot.sigma_limit);
         }
     }
     levels_.publish(ballot.vouching);
@@ -119,7 +119,7 @@ void LaneBoard::close(Identity newest)
     made.open = false;
     const bool backed = is_majority(made.ballot.vouching, made.ballot.seeded, made.unseeded_remain, majority_);
     for (LaneIndex index = 0; index < lanes_.size(); ++index) {
-        if (has_lane(made.ballot.heard, index)) judge(index, made, backed, newest);
+        if (has_lane(made.ballot.sampled, index)) judge(index, made, backed, newest);
     }
 }
 
@@ -157,7 +157,7 @@ LaneMask LaneBoard::excluded() const
 bool LaneBoard::unseeded_remain() const
 {
     return std::any_of(lanes_.begin(), lanes_.end(), [](const LaneTracker& lane) {
-        return lane.heard() && !lane.blocked() && lane.newest().seeded == 0 && is_countable(lane.newest());
+        return lane.has_sample() && !lane.blocked() && lane.newest().seeded == 0 && is_countable(lane.newest());
     });
 }
 

@@ -25,7 +25,7 @@ public:
     /// The lane's sample of this frame; null where there is none.
     const AttitudeState* at(Identity identity) const;
 
-    bool heard() const { return newest_.has_value(); }
+    bool has_sample() const { return newest_.has_value(); }
     const AttitudeState& newest() const { return sample_[newest_->sequence % frame_window]; }
 
     /// The lane can no longer deliver this frame: it delivered it or a later one.

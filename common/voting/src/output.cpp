@@ -116,7 +116,7 @@ VotedAttitude Output::filled(const AttitudeState& sample, const Ballot& ballot, 
     output.voter = settings_.voter;
     output.primary_lane = sample.lane;
     output.excluded_mask = frames_.excluded();
-    output.vouching_mask = ballot.vouching | (frames_.standing() & ~ballot.heard & ~output.excluded_mask);
+    output.vouching_mask = ballot.vouching | (frames_.standing() & ~ballot.sampled & ~output.excluded_mask);
     output.used_mask = sample.used_mask;
     output.isolated_mask = sample.isolated_mask;
     output.suspect_mask = sample.suspect_mask;

@@ -15,11 +15,11 @@ namespace {
 const char* broken_outcome(const Ballot& ballot)
 {
     if (!ballot.primary) return "a frame was published without a primary";
-    if (!has_lane(ballot.heard, *ballot.primary)) return "the primary of a published frame has no sample of it";
+    if (!has_lane(ballot.sampled, *ballot.primary)) return "the primary of a published frame has no sample of it";
     if (!has_lane(ballot.agreeing, *ballot.primary)) return "a primary does not agree with itself";
     if ((ballot.vouching & ~ballot.agreeing) != 0) return "a lane vouches and does not agree";
-    if ((ballot.agreeing & ~ballot.heard) != 0) return "a lane agrees and has no sample";
-    if ((ballot.seeded & ~ballot.heard) != 0) return "a lane is seeded and has no sample";
+    if ((ballot.agreeing & ~ballot.sampled) != 0) return "a lane agrees and has no sample";
+    if ((ballot.seeded & ~ballot.sampled) != 0) return "a lane is seeded and has no sample";
     if ((ballot.isolated & ~ballot.left_out) != 0) return "the primary uses an axis that its group has isolated";
     return nullptr;
 }

@@ -232,12 +232,12 @@ private:
                 observer_.on_source_ended();
                 end.set(clock_.steady_ns() + linger_ns);
             } else if (child.exit_code != 0) {
-                tell_death(child);
+                report_death(child);
             }
         }
     }
 
-    void tell_death(const launch::Child& child)
+    void report_death(const launch::Child& child)
     {
         constexpr int not_started = 127;
         if (child.exit_code == not_started)
