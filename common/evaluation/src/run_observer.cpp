@@ -81,6 +81,12 @@ void RunObserver::on_frame(const SensorFrame& frame)
 {
     if (frame.unit != system_.unit || !shadow_ || frame.epoch != description_->epoch) return;
     shadow_->add(frame);
+    std::erase_if(early_verdicts_, [&](const FaultVerdict& verdict) {
+        const bool due = identity_of(verdict) <= identity_of(frame);
+        if (due) shadow_->apply(verdict);
+        return due;
+    });
+    newest_frame_ = identity_of(frame);
     const auto state = shadow_->publish();
     compare(identity_of(state), state.attitude, without_rollback_);
 }
@@ -127,7 +133,10 @@ void RunObserver::on_verdict(const FaultVerdict& verdict)
 {
     auto* lane = verdict.unit == system_.unit ? lane_of_detector(verdict.detector) : nullptr;
     if (!lane) return;
-    if (shadow_ && lane == &lanes_.front()) shadow_->apply(verdict);
+    if (shadow_ && lane == &lanes_.front()) {
+        if (identity_of(verdict) <= newest_frame_) shadow_->apply(verdict);
+        else early_verdicts_.push_back(verdict);
+    }
     lane->verdict = verdict;
     lane->isolated_ever |= verdict.isolated_mask;
     lane->isolated.update(verdict.isolated_mask, static_cast<double>(verdict.sample_time_ns) * 1e-9);

@@ -1,5 +1,6 @@
 #include "quorient/evaluation/run_observer.hpp"
 
+#include "quorient/geometry/layouts.hpp"
 #include "quorient/messages/meaning.hpp"
 
 #include <gtest/gtest.h>
@@ -112,6 +113,73 @@ TEST_F(RunObserverTest, follows_a_second_publisher_once_the_first_one_is_silent_
     frames(later, 20, 100);
     EXPECT_EQ(observer->newest_truth().epoch, later);
     EXPECT_LE(observer->missing_voted(), 1U);  // the frame at the very end of the silence
+}
+
+/// The error at the end without roll-back, of four gyros at rest. Axis 1 is wrong from frame `onset` on, which the verdict on frame
+/// `onset` + 1 says; the observer receives it when it has received `frames_before` frames.
+double error_without_rollback(std::uint64_t frames_before)
+{
+    constexpr std::uint64_t onset = 50, end = 100;
+    system::System system;
+    system.unit = 1;
+    system.lanes.emplace_back().detector.detector = 4;
+    RunObserver observer(system);
+
+    ClusterDescription description;
+    description.unit = 1;
+    description.epoch = own;
+    description.kind = octet(SensorKind::gyro);
+    description.axis_count = 4;
+    description.interval_s = 0.005;
+    description.initial_attitude = {1, 0, 0, 0};
+    description.initial_attitude_known = 1;
+    const auto cluster = geometry::layout("cone-4").value();
+    for (std::size_t axis = 0; axis < 4; ++axis)
+        Eigen::Map<Eigen::Vector3d>(description.axis[axis].data()) = cluster.axes.row(static_cast<Eigen::Index>(axis)).transpose();
+    observer.on_description(description);
+
+    FaultVerdict verdict;
+    verdict.unit = 1;
+    verdict.detector = 4;
+    verdict.epoch = own;
+    verdict.sequence = onset + 1;
+    verdict.kind = octet(SensorKind::gyro);
+    verdict.state = octet(VerdictState::isolated);
+    verdict.isolated_mask = axis_bit(1);
+    verdict.excluded_from[1] = onset;
+    double accumulated = 0;
+    for (std::uint64_t sequence = 0; sequence < end; ++sequence) {
+        if (sequence == frames_before) observer.on_verdict(verdict);
+        TruthState truth;
+        truth.unit = 1;
+        truth.epoch = own;
+        truth.sequence = sequence;
+        truth.attitude = {1, 0, 0, 0};
+        truth.attitude_known = 1;
+        truth.faulty_mask = sequence >= onset ? axis_bit(1) : 0;
+        observer.on_truth(truth);
+        SensorFrame frame;
+        frame.unit = 1;
+        frame.epoch = own;
+        frame.sequence = sequence;
+        frame.sample_time_ns = static_cast<std::int64_t>(sequence + 1) * 5'000'000;
+        frame.interval_s = 0.005;
+        frame.kind = octet(SensorKind::gyro);
+        frame.axis_count = 4;
+        frame.valid_mask = all_axes(4);
+        frame.increment[1] = sequence >= onset ? 1e-4 : 0;
+        frame.accumulated[1] = accumulated += frame.increment[1];
+        observer.on_frame(frame);
+    }
+    return observer.without_rollback().final_rad;
+}
+
+TEST(WithoutRollback, the_fault_is_in_until_the_frame_of_its_verdict_whichever_arrives_first)
+{
+    const double in_order = error_without_rollback(52);
+    EXPECT_GT(in_order, 1e-4);
+    EXPECT_LT(in_order, 3e-4);
+    EXPECT_EQ(error_without_rollback(45), in_order);  // as on a machine that lets the observer run late
 }
 
 }  // namespace
