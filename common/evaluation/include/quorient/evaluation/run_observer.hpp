@@ -145,7 +145,7 @@ private:
     Watch watch_;
     std::optional<attitude::Integrator> shadow_;
     std::vector<FaultVerdict> early_verdicts_;  ///< for shadow_, which has not received their frames: it would leave an axis out from its onset
-    Identity newest_frame_;                     ///< of shadow_
+    Identity newest_frame_;                     ///< that shadow_ has received
     std::optional<ClusterDescription> description_;
     std::map<std::uint64_t, LaterEpoch> later_;                                   // by epoch
     std::unordered_map<std::uint64_t, TruthState> truth_;                         // by sequence, newest epoch only
