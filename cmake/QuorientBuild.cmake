@@ -114,7 +114,7 @@ function(quorient_unity target)
   get_target_property(sources ${target} SOURCES)
   list(LENGTH sources count)
   if(QUORIENT_UNITY AND count GREATER 1)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 20)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 32)
   endif()
 endfunction()
 
