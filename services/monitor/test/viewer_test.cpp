@@ -100,7 +100,9 @@ TEST_F(ViewerMessages, have_no_attitude_where_the_output_is_lost)
 
 TEST_F(ViewerMessages, name_the_isolated_axis_in_the_lane_that_isolated_it_and_no_other)
 {
-    for (const auto& entry : messages(ViewerChannel::axes).front()["axes"]) {
+    const auto axes = messages(ViewerChannel::axes).front()["axes"];
+    ASSERT_FALSE(axes.empty());
+    for (const auto& entry : axes) {
         const bool is_it = entry["name"] == "G2" && entry["lane"] == "a";
         EXPECT_EQ(entry["state"] == "isolated", is_it) << entry;
         if (is_it) {
