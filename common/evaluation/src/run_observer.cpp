@@ -77,6 +77,9 @@ void RunObserver::on_description(const ClusterDescription& description)
     if (auto made = attitude::Integrator::make(settings, *cluster)) shadow_.emplace(std::move(*made));
 }
 
+/// Verdicts that wait for their frames: beyond these the frames are taken as lost.
+constexpr std::size_t most_early_verdicts = 256;
+
 void RunObserver::on_frame(const SensorFrame& frame)
 {
     if (frame.unit != system_.unit || !shadow_ || frame.epoch != description_->epoch) return;
@@ -136,6 +139,10 @@ void RunObserver::on_verdict(const FaultVerdict& verdict)
     if (shadow_ && lane == &lanes_.front()) {
         if (identity_of(verdict) <= newest_frame_) shadow_->apply(verdict);
         else early_verdicts_.push_back(verdict);
+        if (early_verdicts_.size() > most_early_verdicts) {
+            shadow_->apply(early_verdicts_.front());
+            early_verdicts_.erase(early_verdicts_.begin());
+        }
     }
     lane->verdict = verdict;
     lane->isolated_ever |= verdict.isolated_mask;

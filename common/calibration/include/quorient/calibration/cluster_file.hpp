@@ -25,7 +25,7 @@ struct CalibratedCluster {
     std::optional<fdi::MotionNoise> gated{};  ///< nothing where the recording does not show it
     std::string origin;                       ///< which log it comes from
 
-    /// That of its raw measurements.
+    /// Makes corrected increments of what these sensors measured.
     Correction correction() const { return {description.bias, gain}; }
 
     /// What this axis measured in a raw sample, as a corrected increment.
