@@ -256,7 +256,7 @@ def machine(options):
         "processor": model, "cores": os.cpu_count(), "kernel": platform.release(), "load_before": os.getloadavg(), "nice": os.nice(0),
         "versions": {"Fast DDS": version("libfastrtps2.9", "libfastdds3.1"), "Cyclone DDS": version("cyclonedds-dev"), "iceoryx": version("iceoryx")},
         "rounds": options.rounds, "seconds": options.seconds, "command": " ".join(["python3 -m integration_tests.latency.run", *sys.argv[1:]]),
-        "date": time.strftime("%Y-%m-%d", time.gmtime()),
+        "date": time.strftime("%Y-%m-%d", time.gmtime()), "time_utc": time.strftime("%H:%M", time.gmtime()),
     }
 
 
