@@ -101,12 +101,12 @@ def wrong_isolations(merged, truth):
 def explain(pipeline, truth, names, missing):
     """When frames went missing, and what the voters said in the seconds around it."""
     wall_s = time.time() - time.monotonic()
-    told = None
+    explained_s = None
     for identity in missing:
         at_s = truth[identity].arrival_s + wall_s
-        if told is not None and at_s - told < 1:
+        if explained_s is not None and at_s - explained_s < 1:
             continue
-        told = at_s
+        explained_s = at_s
         around = {time.strftime("%H:%M:%S", time.gmtime(at_s + offset)) for offset in (-1, 0, 1)}
         print(f"--- from frame {identity[1]} on, {time.strftime('%H:%M:%S', time.gmtime(at_s))}", file=sys.stderr)
         for name in names:

@@ -157,7 +157,7 @@ def play(containers, observed, chapter):
     return observed.longest_stall_s(begin_s)
 
 
-def tell(observed, chapter, verdicts):
+def judge_chapter(observed, chapter, verdicts):
     truth = {sample.identity: sample for sample in observed.truth}
     gap = largest_gap(observed.plain, truth, chapter.since, chapter.end)
     steps = "; ".join(f"voter {voter} {steps_text(levels(observed, chapter, voter))}" for voter in chapter.voters)
@@ -232,7 +232,7 @@ def judge_whole_run(observed, verdicts, onset):
 
 def play_all(containers, observed, chapters, verdicts):
     """@returns [(title, first frame, last frame)] of each chapter"""
-    told = []
+    faults = []
     for chapter in chapters:
         for attempt in range(3):
             until_whole(containers, observed, f"three lanes behind both voters before: {chapter.name}", RETURN_S)
@@ -240,9 +240,9 @@ def play_all(containers, observed, chapters, verdicts):
             if not chapter.broken or stall_s < STALL_S or attempt == 2:
                 break
             verdicts.say(f"again: {chapter.name}: {'; '.join(chapter.broken)}; this machine stood still for {1e3 * stall_s:.0f} ms")
-        tell(observed, chapter, verdicts)
-        told.append((chapter.name, chapter.since, chapter.end))
-    return told
+        judge_chapter(observed, chapter, verdicts)
+        faults.append((chapter.name, chapter.since, chapter.end))
+    return faults
 
 
 def stop(containers, verdicts):
@@ -272,10 +272,10 @@ def scenario(containers, observed, verdicts):
     start_up(containers, observed, verdicts)
     until_settled(observed)
     onset = sensor_fault(containers, observed, verdicts)
-    told = [(f"axis {FAULTY_AXIS} begins to lie", onset, observed.newest()), *play_all(containers, observed, chapters(), verdicts)]
+    faults = [(f"axis {FAULTY_AXIS} begins to lie", onset, observed.newest()), *play_all(containers, observed, chapters(), verdicts)]
     judge_whole_run(observed, verdicts, onset)
     stop(containers, verdicts)
-    return told
+    return faults
 
 
 def conclude(containers, verdicts, logs):
@@ -291,14 +291,14 @@ def main():
     parser.add_argument("logs", type=pathlib.Path, help="folder for the logs of a failure")
     parser.add_argument("--trace", type=pathlib.Path, help="write here what the observer received around each fault")
     options = parser.parse_args()
-    containers, verdicts, told = TwoNetworks(os.environ["COMPOSE_PROJECT_NAME"]), Verdicts(), []
+    containers, verdicts, faults = TwoNetworks(os.environ["COMPOSE_PROJECT_NAME"]), Verdicts(), []
     with Observed(containers.ids["observer"]) as observed:
         try:
-            told = scenario(containers, observed, verdicts)
+            faults = scenario(containers, observed, verdicts)
         except (NotInTime, RuntimeError, subprocess.TimeoutExpired) as problem:
             verdicts.check("the scenario runs to its end", False, problem)
         if options.trace:
-            options.trace.write_text("\n".join(table(observed, *fault) for fault in told))
+            options.trace.write_text("\n".join(table(observed, *fault) for fault in faults))
     return conclude(containers, verdicts, options.logs)
 
 

@@ -120,8 +120,8 @@ def judge(merged, plain, truths, summary, since, end, faulty, voters, full):
     seen = [mask for lane in summary["lanes"].values() for mask in lane["isolated"]]
     figures.wrong_isolations = sum(not faulty >> axis & 1 for axis in seen)
     figures.wrong_isolations += sum(bool(sample.isolated & ~faulty) for sample in merged)
-    told = [lane["frames_to_isolation"] for lane in summary["lanes"].values() if lane["frames_to_isolation"]]
-    figures.frames_to_isolation = min(max(told, default=3), 3)
+    frames = [lane["frames_to_isolation"] for lane in summary["lanes"].values() if lane["frames_to_isolation"]]
+    figures.frames_to_isolation = min(max(frames, default=3), 3)
     until = [frames_until([sample for sample in merged if sample.voter == voter], since, full) for voter in voters]
     figures.frames_to_full = None if None in until else max(until)
     return figures

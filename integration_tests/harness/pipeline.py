@@ -123,15 +123,15 @@ class Pipeline:
             time.sleep(0.01)
 
     def until_running(self):
-        heard = (self.merged, self.plain, self.truth)
-        self.until(lambda: all(recording.newest for recording in heard), "all three listeners receive samples")
+        recorded = (self.merged, self.plain, self.truth)
+        self.until(lambda: all(recording.newest for recording in recorded), "all three listeners receive samples")
 
     def until_frame(self, frame):
         """Returns when the publisher's frame is due, as estimated from the truth sample with the shortest delay so far. @returns that frame."""
         self.until(lambda: self.truth.newest and self.truth.newest.identity[1] >= frame - self.rate_hz / 4, f"frame {frame} is near")
         epoch = self.truth.newest.identity[0]
-        heard = [truth for truth in self.truth.samples[-self.rate_hz:] if truth.identity[0] == epoch]
-        start_s = min(truth.arrival_s - truth.identity[1] / self.rate_hz for truth in heard)
+        recorded = [truth for truth in self.truth.samples[-self.rate_hz:] if truth.identity[0] == epoch]
+        start_s = min(truth.arrival_s - truth.identity[1] / self.rate_hz for truth in recorded)
         time.sleep(max(0.0, start_s + frame / self.rate_hz - time.monotonic()))
         return (epoch, int(frame))
 

@@ -18,28 +18,28 @@ DATA = pathlib.Path(os.environ.get("QUORIENT_DATA_DIR", SHARED / "data"))
 CONFIGURATIONS = ROOT / "deploy/configurations"
 
 
-class Told(unittest.TestResult):
+class Attempt(unittest.TestResult):
     """What one attempt reported, to be reported again to the result that counts."""
 
     def __init__(self):
         super().__init__()
-        self.words = []
+        self.calls = []
 
-    def tell(self, result):
-        for word, arguments in self.words:
-            getattr(result, word)(*arguments)
+    def repeat_to(self, result):
+        for method, arguments in self.calls:
+            getattr(result, method)(*arguments)
 
 
-def remember(word):
-    def told(self, *arguments):
-        getattr(unittest.TestResult, word)(self, *arguments)
-        self.words.append((word, arguments))
+def remember(method):
+    def call(self, *arguments):
+        getattr(unittest.TestResult, method)(self, *arguments)
+        self.calls.append((method, arguments))
 
-    return told
+    return call
 
 
 for outcome in ("addSuccess", "addError", "addFailure", "addSkip", "addSubTest", "addExpectedFailure", "addUnexpectedSuccess"):
-    setattr(Told, outcome, remember(outcome))
+    setattr(Attempt, outcome, remember(outcome))
 
 
 class ProcessTest(unittest.TestCase):
@@ -55,14 +55,14 @@ class ProcessTest(unittest.TestCase):
         attempts = []
 
         def attempt():
-            attempts.append(Told())
+            attempts.append(Attempt())
             super(ProcessTest, self).run(attempts[-1])
             return attempts[-1].wasSuccessful()
 
         result.startTest(self)
         try:
             until_held(attempt)
-            attempts[-1].tell(result)
+            attempts[-1].repeat_to(result)
         except NoQuietMachine as reason:
             for _, text in attempts[-1].failures + attempts[-1].errors:
                 print(text, file=sys.stderr)

@@ -50,15 +50,15 @@ class ForeignPublisher(InteropTest):
         publisher.send_signal(signal.SIGTERM)
         self.assertEqual(publisher.wait(10), 0)
 
-    def told(self):
+    def all_events(self):
         return exact_json.objects(self.events)
 
     def refused(self, since=0):
-        return [e for e in self.told()[since:] if e["code"] in (REJECTED_INPUT, UNKNOWN_REVISION) and e["source_name"] in LANES]
+        return [e for e in self.all_events()[since:] if e["code"] in (REJECTED_INPUT, UNKNOWN_REVISION) and e["source_name"] in LANES]
 
     def is_named(self, mistake):
         code, words, by = MISTAKES[mistake]
-        since = len(self.told())
+        since = len(self.all_events())
         publisher = self.publish(mistake)
 
         def sources():
@@ -72,8 +72,8 @@ class ForeignPublisher(InteropTest):
 
     def is_followed(self):
         """A correct publisher that starts when its predecessor has fallen silent."""
-        since = len(self.told())
-        newest = max((event["epoch"] for event in self.told()), default=0)
+        since = len(self.all_events())
+        newest = max((event["epoch"] for event in self.all_events()), default=0)
         publisher = self.publish("none")
         try:
             self.eventually(lambda: self.follows(newest, 100), "its frames are voted on")
@@ -90,7 +90,7 @@ class ForeignPublisher(InteropTest):
         return any(voted["sequence_number"] > sequence and voted["epoch"] > epoch for voted in present)
 
     def unmatched(self):
-        return {event["source_name"] for event in self.told() if event["code"] == NO_MATCH and "frame matched nobody for 5 s" in event["text"]}
+        return {event["source_name"] for event in self.all_events() if event["code"] == NO_MATCH and "frame matched nobody for 5 s" in event["text"]}
 
     def memory_mb(self):
         """Resident, of every service."""
@@ -111,7 +111,7 @@ class ForeignPublisher(InteropTest):
         publisher = self.publish("qos")
 
         def told_of_reliability():
-            return {e["source_name"] for e in self.told() if e["code"] == INCOMPATIBLE_QOS and "frame" in e["text"] and "RELIABILITY" in e["text"].upper()}
+            return {e["source_name"] for e in self.all_events() if e["code"] == INCOMPATIBLE_QOS and "frame" in e["text"] and "RELIABILITY" in e["text"].upper()}
 
         self.eventually(lambda: LANES <= told_of_reliability(), "every lane names the policy", timeout=12)
         self.stop(publisher)
@@ -121,7 +121,7 @@ class ForeignPublisher(InteropTest):
         memory = []
         for _ in range(3):
             publisher = self.publish("units")
-            before = max((event["epoch"] for event in self.told()), default=0)
+            before = max((event["epoch"] for event in self.all_events()), default=0)
             self.eventually(lambda: self.follows(before, 700), "the unit is voted on while 10 000 others are published")
             memory.append(self.memory_mb())
             self.stop(publisher)

@@ -56,10 +56,10 @@ class Out(Ros2Test):
 
     def test_voted_attitude_is_heard_in_both_profiles_by_both_vendors_from_one_voter_at_a_time(self):
         truths = self.echo_logged("truth")
-        heard = {(v, p): self.read(v, "imu", "rt/imu/data", p) for v in VENDORS for p in PROFILES}
+        logs = {(v, p): self.read(v, "imu", "rt/imu/data", p) for v in VENDORS for p in PROFILES}
         diagnostics = {v: self.read(v, "diagnostics", "rt/diagnostics", "default") for v in VENDORS}
         services = self.start_demo()
-        for reader, log in heard.items():
+        for reader, log in logs.items():
             self.eventually(lambda: len(imus(log)) > 200, f"200 messages at {reader}", timeout=30)
         for vendor, log in diagnostics.items():
             self.eventually(lambda: "|quorient: axis 1 (G2)|isolated|unit 1" in log.read_text(), f"the isolated axis in {vendor}'s diagnostics")
@@ -68,10 +68,10 @@ class Out(Ros2Test):
         if shutil.which("tshark"):
             self.assert_tshark_names_the_topics()
         truth = {sample["sample_time_ns"]: sample for sample in exact_json.objects(truths)}
-        for (vendor, profile), log in heard.items():
+        for (vendor, profile), log in logs.items():
             with self.subTest(vendor=vendor, profile=profile):
                 self.assert_true(imus(log), truth)
-        self.hand_over(services, heard, diagnostics)
+        self.hand_over(services, logs, diagnostics)
 
     def assert_true(self, messages, truth):
         compared = [(imu, truth[imu.stamp_ns]) for imu in messages if imu.stamp_ns in truth]
@@ -89,12 +89,12 @@ class Out(Ros2Test):
             allowed = 5 * math.sqrt(imu.rate_variance) + 1e-3
             self.assertLess(max(abs(a - b) for a, b in zip(imu.rate, true["rate_rad_s"])), allowed)
 
-    def hand_over(self, services, heard, diagnostics):
-        before = {reader: len(imus(log)) for reader, log in heard.items()}
+    def hand_over(self, services, logs, diagnostics):
+        before = {reader: len(imus(log)) for reader, log in logs.items()}
         services["voter-1"][0].kill()
         for vendor, log in diagnostics.items():
             self.eventually(lambda: "0|quorient: voter 2|owns the output|" in log.read_text(), f"voter 2 writes diagnostics to {vendor}")
-        for reader, log in heard.items():
+        for reader, log in logs.items():
             self.eventually(lambda: len(imus(log)) > before[reader] + 50, f"messages go on at {reader}")
             stamps = [imu.stamp_ns for imu in imus(log)]
             twice = len(stamps) - len(set(stamps))
@@ -175,16 +175,16 @@ class In(Ros2Test):
         services = self.start_pipeline(configuration)
         self.eventually(lambda: any(v["mode"] == NORMAL for v in exact_json.objects(voted)), "the robot's attitude is voted on", timeout=30)
 
-        def told(words):
+        def events_with(words):
             return [e for e in exact_json.objects(events) if e["source_name"] == "sensor" and words in e["text"]]
 
         for round_, words in enumerate(("silent", "its stamps are off", "its stamps are off", "duplicated"), 1):
-            since = len(told("middle"))
+            since = len(events_with("middle"))
             robot.send_signal(signal.SIGUSR1)  # silent, late, ahead, doubled
-            self.eventually(lambda: any(words in e["text"] for e in told("middle")[since:]), f"{words} ({round_})")
-            self.assertEqual({e["axes"] for e in told("middle")}, {MIDDLE})
+            self.eventually(lambda: any(words in e["text"] for e in events_with("middle")[since:]), f"{words} ({round_})")
+            self.assertEqual({e["axes"] for e in events_with("middle")}, {MIDDLE})
             robot.send_signal(signal.SIGUSR1)  # well
-            self.eventually(lambda: len(told("middle: measures again")) >= round_ and "again" in told("middle")[-1]["text"], f"well ({round_})")
+            self.eventually(lambda: len(events_with("middle: measures again")) >= round_ and "again" in events_with("middle")[-1]["text"], f"well ({round_})")
         robot.send_signal(signal.SIGUSR1)
         self.eventually(lambda: any(v["isolated_mask"] & REAR == REAR for v in exact_json.objects(voted)), "the third IMU's bias isolated")
         self.all_alive(services)
@@ -255,17 +255,17 @@ class Uncalibrated(Ros2Test):
         self.eventually(lambda: self.said.read_text().endswith("\n"), "the IMUs say when they will turn")
         self.turns_ns = int(self.said.read_text())
 
-    def heard(self, topic):
+    def received(self, topic):
         return exact_json.objects(self.topics[topic])
 
     def turned_for(self, seconds):
-        last = self.heard("voter_output")[-1:]
+        last = self.received("voter_output")[-1:]
         return bool(last) and last[0]["sample_time_ns"] > self.turns_ns + seconds * 1e9
 
     def assert_biases_were_learned_first(self):
-        texts = [event["text"] for event in self.heard("event") if LEARNED in event["text"]]
+        texts = [event["text"] for event in self.received("event") if LEARNED in event["text"]]
         self.assertEqual(sorted(text.split(":")[0] for text in texts), ["front", "middle", "rear"], texts)
-        description = self.heard("cluster")[-1]
+        description = self.received("cluster")[-1]
         for found, bias in zip(description["bias"], BIASES_DEG_S):
             self.assertAlmostEqual(math.degrees(found), bias, delta=0.02)
         self.assertTrue(all(sigma > 0 for sigma in description["sigma"][:9]))
@@ -280,11 +280,11 @@ class Uncalibrated(Ros2Test):
         recorder.send_signal(signal.SIGINT)
         self.assertEqual(recorder.wait(20), 0, recorder.stdout.read())
         self.assert_biases_were_learned_first()
-        verdicts, voted = self.heard("verdict"), self.heard("voter_output")
+        verdicts, voted = self.received("verdict"), self.received("voter_output")
         self.assertGreater(len(verdicts), 3 * 200 * WATCHED_S)
         self.assertEqual({verdict["isolated_mask"] for verdict in verdicts}, {0})
         self.assertEqual({sample["isolated_mask"] for sample in voted}, {0})
-        left_out = [event["text"] for event in self.heard("event") if "LEFT OUT" in event["text"]]
+        left_out = [event["text"] for event in self.received("event") if "LEFT OUT" in event["text"]]
         self.assertEqual(left_out, [])
         last = voted[-1]
         error = angle(last["attitude"], attitude_after((last["sample_time_ns"] - self.turns_ns) * 1e-9))
@@ -319,10 +319,10 @@ class Uncalibrated(Ros2Test):
     def test_a_real_fault_of_one_of_them_is_isolated(self):
         self.start_biased()
         self.eventually(lambda: self.turned_for(3), "motion", timeout=60)
-        self.assertEqual({sample["isolated_mask"] for sample in self.heard("voter_output")}, {0})
+        self.assertEqual({sample["isolated_mask"] for sample in self.received("voter_output")}, {0})
         self.imus.send_signal(signal.SIGUSR1)
-        self.eventually(lambda: any(sample["isolated_mask"] == REAR for sample in self.heard("voter_output")), "the third IMU is isolated", timeout=15)
-        self.assertLessEqual({sample["isolated_mask"] for sample in self.heard("voter_output")}, {0, REAR})
+        self.eventually(lambda: any(sample["isolated_mask"] == REAR for sample in self.received("voter_output")), "the third IMU is isolated", timeout=15)
+        self.assertLessEqual({sample["isolated_mask"] for sample in self.received("voter_output")}, {0, REAR})
 
 
 if __name__ == "__main__":

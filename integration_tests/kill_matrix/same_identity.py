@@ -108,7 +108,7 @@ class ContainedPipeline(Pipeline):
     def _start_all(self):
         if self._transport == "iceoryx":
             self._start_roudi()
-        self.heard = self._listen(self.role.topic, self._parse)
+        self.of_role = self._listen(self.role.topic, self._parse)
         self.outputs = self._listen("voter_output", parse_voted)
         self.voted = self._listen("voted", parse_voted)
         for name in PROCESSES:
@@ -191,7 +191,7 @@ class ContainedPipeline(Pipeline):
         self.processes[self.role.process].wait()
         known = {id(recording): Known(len(recording.samples), recording.newest.identity) for recording in self.recordings}
         self._start(self.role.process)
-        flowing = self._first_of_each(killed_s, self.heard, lambda recording: self._flowing(recording, known[id(recording)]))
+        flowing = self._first_of_each(killed_s, self.of_role, lambda recording: self._flowing(recording, known[id(recording)]))
         if flowing is None:
             return Restart(math.inf, math.inf)
         if self._inside(self.role.process)[1] != own_id:

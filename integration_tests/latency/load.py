@@ -63,16 +63,16 @@ def run(vendors, rate_hz, free, options):
         try:
             summary = exact_json.loads(launch.communicate(timeout=options.seconds + PATIENCE_S)[0])
         finally:
-            told = []
+            outputs = []
             for process in (launch, events, probe):
                 if process.poll() is None:
                     process.terminate()
                 try:
-                    told.append(process.communicate(timeout=10)[0])
+                    outputs.append(process.communicate(timeout=10)[0])
                 except subprocess.TimeoutExpired:
                     process.kill()
-                    told.append(process.communicate()[0])
-    return summary, json.loads(told[2]), [exact_json.loads(line) for line in told[1].splitlines() if line.endswith("}")]
+                    outputs.append(process.communicate()[0])
+    return summary, json.loads(outputs[2]), [exact_json.loads(line) for line in outputs[1].splitlines() if line.endswith("}")]
 
 
 HEADER = ("demo on", "rate [Hz]", "free of each processor", "age p50 [ms]", "age p99 [ms]", "age max [ms]", "frames sent", "not voted", "level changes",

@@ -29,7 +29,7 @@ def main():
         sys.exit(__doc__)
     for run in runs:
         about = run["machine"]
-        print(f"* {about['date']} {about.get('time_utc', '')}: {about['rounds']} rounds of {about['seconds']} s, load {about['load_before'][0]:.1f} at the start")
+        print(f"* {about['date']} {about['time_utc']} UTC: {about['rounds']} rounds of {about['seconds']} s, load {about['load_before'][0]:.1f} at the start")
     print()
     cases = [result["case"] for result in runs[0]["transports"] if "floor" in result["rounds"][0]]
     body = [row([table.find(run["transports"], **case) for run in runs]) for case in cases]

@@ -85,7 +85,7 @@ class Runner:
         processes = {name: start(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for name, command in commands.items()}
         sensors = [process for name, process in processes.items() if name.endswith("sensor")]
         units = case.get("units", 1)
-        heard = 1 if case.get("own_domains") else units  # by the probe, in its domain
+        seen_units = 1 if case.get("own_domains") else units  # by the probe, in its domain
         usage = Usage(processes)
         try:
             deadline = time.monotonic() + START_PATIENCE_S + seconds
@@ -109,8 +109,8 @@ class Runner:
         if "begin_s" not in report:
             ask_for_build("quorient-latency-probe is of an earlier build")
         report["processes"] = usage.between(report["begin_s"], report["end_s"])
-        whole = int(round(seconds * case["rate_hz"])) * heard
-        report["expected"] = whole - skip * heard - report["before_the_probe"]
+        whole = int(round(seconds * case["rate_hz"])) * seen_units
+        report["expected"] = whole - skip * seen_units - report["before_the_probe"]
         report["never_sent"] = whole - report["sent"] if report["sent"] else 0
         return report
 
@@ -158,11 +158,11 @@ class Runner:
                 whom = ["ours", *(floors if TRANSPORTS[case["transport"]][1] and case.get("units", 1) == 1 else ()), *others]
                 entry = {who: self.once(who, case, seconds or self.options.seconds) for who in [*whom[turn % len(whom):], *whom[:turn % len(whom)]]}
                 result["rounds"].append({who: report for who, report in entry.items() if report})
-                tell(case, turn, result["rounds"][-1])
+                print_round(case, turn, result["rounds"][-1])
         return [result for result in results if any("ours" in entry for entry in result["rounds"])]
 
 
-def tell(case, turn, entry):
+def print_round(case, turn, entry):
     def of(report):
         voted = report["hops"]["sensor_to_voted"]
         return f"p50 {voted['p50']:.0f} us, lost {table.lost(report)}" if voted else "nothing"

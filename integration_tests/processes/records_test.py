@@ -55,7 +55,7 @@ class ReadByOthers(RecordTest):
     def test_gives_every_sample_as_it_was_and_is_replayed_from_any_rewriting(self):
         node_modules()
         together = self.record("flight.mcap", "--duration", 6), self.record("flight.csv", "--duration", 6)
-        told = self.ended(together[0])
+        text = self.ended(together[0])
         self.ended(together[1])
         found, rows = self.check("flight.mcap")
 
@@ -66,15 +66,15 @@ class ReadByOthers(RecordTest):
         self.assertEqual(found["compressions"], ["zstd"])
         self.assertEqual(found["indexed"], {topic: count for topic, count in counts.items() if count})
         self.assertEqual(found["statistics"]["messageCount"], sum(counts.values()))
-        self.assertIn(f"flight.mcap: {counts['quorient/frame']} frames", told)
-        self.assertIn(f"{sum(counts.values())} samples in all", told)
+        self.assertIn(f"flight.mcap: {counts['quorient/frame']} frames", text)
+        self.assertIn(f"{sum(counts.values())} samples in all", text)
         self.compare_with_csv(rows)
         self.compare_viewers(found, counts)
 
         whole = self.replay("flight.mcap")
         self.assertEqual(whole["frames"], counts["quorient/frame"])
         self.assertEqual(whole["isolations"], [])
-        if "never arrived" not in told:
+        if "never arrived" not in text:
             self.assertLess(whole["attitude"]["max_error_rad"], 1e-5, "against the truth in the file")
         for kind in ("none", "unchunked", "lz4"):
             with self.subTest(rewritten=kind):
@@ -126,9 +126,9 @@ class Killed(RecordTest):
 class Rotated(RecordTest):
     def test_by_time_gives_files_that_are_complete_alone_and_together(self):
         node_modules()
-        told = self.ended(self.record("flight.mcap", "--rotate-s", 1, "--duration", 4.5))
+        text = self.ended(self.record("flight.mcap", "--rotate-s", 1, "--duration", 4.5))
         names = sorted(path.name for path in self.run_directory.glob("flight_*.mcap"))
-        self.assertGreaterEqual(len(names), 4, told)
+        self.assertGreaterEqual(len(names), 4, text)
         self.assertEqual(names[0], "flight_0000.mcap")
         self.assertFalse(self.path("flight.mcap").exists())
         all_rows = []

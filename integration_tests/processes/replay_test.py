@@ -125,8 +125,8 @@ class SimulatedLog(ProcessTest):
         isolated_s = next(entry["time_s"] for entry in report["isolations"] if entry["lane"] == "a")
         self.assertAlmostEqual(float(first["time_s"]), isolated_s)
         self.assertTrue(all(row["isolated"] == "" for row in rows if float(row["time_s"]) < 4))
-        told = [json.loads(line) for line in pathlib.Path(events).read_text().splitlines()]
-        isolated = [event for event in told if event["code"] == "ISOLATED" and event["axes"] == [2]]
+        found = [json.loads(line) for line in pathlib.Path(events).read_text().splitlines()]
+        isolated = [event for event in found if event["code"] == "ISOLATED" and event["axes"] == [2]]
         self.assertTrue(isolated)
         self.assertAlmostEqual(isolated[0]["time_s"], 4, delta=0.1)
 

@@ -43,8 +43,8 @@ def record(folder):
     ]
     time.sleep(SECONDS - 2)  # the time that is measured
     cost, twin_cost = [cpu_seconds(one.pid) / (SECONDS - 2) for one in (process, twin)]
-    told, twin_told = [one.communicate(timeout=30)[1].strip().split(": ", 1)[1] for one in (process, twin)]
-    return file.stat().st_size, (cost, twin_cost), (told, twin_told)
+    text, twin_text = [one.communicate(timeout=30)[1].strip().split(": ", 1)[1] for one in (process, twin)]
+    return file.stat().st_size, (cost, twin_cost), (text, twin_text)
 
 
 def last_time_ns(file):
@@ -96,8 +96,8 @@ def main():
         )
         try:
             time.sleep(2)  # the pipeline starts; what is measured does not depend on it
-            size, costs, told = record(folder)
-            frames = int(re.match(r"(\d+) frames", told[0]).group(1))
+            size, costs, texts = record(folder)
+            frames = int(re.match(r"(\d+) frames", texts[0]).group(1))
             kills = [kill(folder, number, after_s) for number, after_s in enumerate(KILLS_AFTER_S)]
         finally:
             launched.terminate()
@@ -106,8 +106,8 @@ def main():
         counts, content, differ = read_by_others(folder, folder / "flight.mcap")
     seconds = frames / 200
     print("| what | |\n|---|---|")
-    print(f"| reported by `record` | {told[0]} |")
-    print(f"| reported by `record` of a CSV beside it | {told[1]} |")
+    print(f"| reported by `record` | {texts[0]} |")
+    print(f"| reported by `record` of a CSV beside it | {texts[1]} |")
     print(f"| size | {size / 1e6:.1f} MB |")
     print(f"| frames that `quorient replay` reads | {replayed['frames']} |")
     print(f"| the same by `@mcap/core`, forwards and by the index | {counts['quorient/frame']} frames, {sum(counts.values())} messages in all |")

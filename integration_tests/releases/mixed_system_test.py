@@ -11,15 +11,15 @@ class MixedSystem(unittest.TestCase):
         reason = absence(scenario)
         if reason:
             self.skipTest(reason)
-        told = []
+        attempts = []
 
         def once():
             steps, figures, broken = run(scenario)
-            told.append("\n".join((table(steps, figures), *broken)))
+            attempts.append("\n".join((table(steps, figures), *broken)))
             return not broken
 
         old = "The programs of the other release may be older than these sources: build them there again."
-        self.assertTrue(until_held(once), "\n\n".join((*told, old)))
+        self.assertTrue(until_held(once), "\n\n".join((*attempts, old)))
 
     def test_no_frame_is_lost_when_processes_die_beside_a_lane_of_the_other_release(self):
         self.holds("kills")

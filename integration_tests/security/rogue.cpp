@@ -25,9 +25,9 @@ extern "C" std::time_t time(std::time_t* result) noexcept
 {
     timespec now{};
     ::clock_gettime(CLOCK_REALTIME, &now);
-    const std::time_t told = now.tv_sec + rogue::clock_offset_s;
-    if (result) *result = told;
-    return told;
+    const std::time_t shifted = now.tv_sec + rogue::clock_offset_s;
+    if (result) *result = shifted;
+    return shifted;
 }
 
 std::string rogue::patched_plugin()

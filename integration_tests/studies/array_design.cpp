@@ -207,7 +207,7 @@ std::string cell(double value, int digits = 10)
 
 void append_proofs(std::string& text, const std::vector<Proof>& proofs)
 {
-    text += "## Known optima, found without being told\n\n| asked | figure | found | known | difference | bound of any array | beyond the bound | known from |\n|---|---|---|---|---|---|---|---|\n";
+    text += "## Known optima, found without being given\n\n| asked | figure | found | known | difference | bound of any array | beyond the bound | known from |\n|---|---|---|---|---|---|---|---|\n";
     for (const Proof& proof : proofs) {
         const double apart = std::isfinite(proof.bound) ? std::abs(proof.found / proof.bound - 1) : undefined;
         fmt::format_to(std::back_inserter(text), "| {} | {} | {} | {} | {:.1e} | {} | {} | {} |\n", proof.asked, proof.figure, cell(proof.found), cell(proof.known),

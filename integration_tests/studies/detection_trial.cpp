@@ -61,10 +61,10 @@ rotation::Quaternion attitude_after(const std::vector<SensorFrame>& frames, std:
 void compare_attitudes(const RecordedArray& array, const Trial& trial, const std::vector<SensorFrame>& frames, std::size_t first,
                        const FaultVerdict& verdict, TrialResult& result)
 {
-    FaultVerdict told = verdict;
+    FaultVerdict best_verdict = verdict;
     const std::uint64_t onset = array.frames[trial.onset].sequence;
     for (std::size_t axis = 0; axis < array.cluster.size(); ++axis)
-        if (has_axis(verdict.isolated_mask, axis)) told.excluded_from[axis] = onset;
+        if (has_axis(verdict.isolated_mask, axis)) best_verdict.excluded_from[axis] = onset;
     const std::uint64_t excluded_from = verdict.excluded_from[trial.axis];
     const auto begins = [&](std::uint64_t sequence) {
         return std::lower_bound(frames.begin(), frames.end(), sequence,
@@ -73,7 +73,7 @@ void compare_attitudes(const RecordedArray& array, const Trial& trial, const std
     const auto earliest = static_cast<std::size_t>(begins(std::min(onset, excluded_from)) - frames.begin());
     const std::size_t from = earliest > frames_before_exclusion ? earliest - frames_before_exclusion : 0;
     const auto ours = attitude_after(frames, from, array.cluster, verdict);
-    const auto best = attitude_after(frames, from, array.cluster, told);
+    const auto best = attitude_after(frames, from, array.cluster, best_verdict);
 
     const auto excluded = static_cast<std::size_t>(begins(excluded_from) - frames.begin());
     const auto& h = array.cluster.axes;

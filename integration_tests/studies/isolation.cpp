@@ -52,7 +52,7 @@ double worst_wrong(const Cells& cells)
 /// Whether a judge of this kind judges the case: one that is given the number of faults is left out where there are none.
 bool asked(IsolationRow::Kind kind, std::size_t one)
 {
-    return kind != IsolationRow::Kind::told || isolation_cases[one].faults.count > 0;
+    return kind != IsolationRow::Kind::known_count || isolation_cases[one].faults.count > 0;
 }
 
 double mean_correct(const Cells& cells, IsolationRow::Kind kind = IsolationRow::Kind::ours)
@@ -80,7 +80,7 @@ double error_of_difference(const Rate& ours, double published, double published_
 const char* label(IsolationRow::Kind kind)
 {
     switch (kind) {
-        case IsolationRow::Kind::told:
+        case IsolationRow::Kind::known_count:
             return "bound";
         case IsolationRow::Kind::assumes:
             return "takes 2";
@@ -279,7 +279,7 @@ Report isolation(const RunSettings& settings, const OnProgress& on_progress)
     report.text =
         "Correct, %: ours ± standard error, recomputed, difference (!: beyond four standard errors of both). Noise N(0,1), random signs "
         "and "
-        "axes.\nRows with known k are bounds: they are told how many faults there are.\n\n";
+        "axes.\nRows with known k are bounds: they are given how many faults there are.\n\n";
     for (std::size_t layout = 0; layout < isolation_layouts.size(); ++layout)
         report.text += correct_table(layout, rows, row_cells, extreme) + '\n';
     fmt::format_to(std::back_inserter(report.text), "largest difference: {:+.2f} ({:+.1f} standard errors): {}\n\n", extreme.difference,

@@ -24,7 +24,7 @@ constexpr double readmitted_at_s = 45;
 struct Rule {
     const char* name;
     double error;      ///< error of every entry of A and B of the plant, uniform within +-
-    double told;       ///< what the observers allow for
+    double allowed;       ///< what the observers allow for
     double threshold;  ///< 0: from noise and model error
 };
 
@@ -48,7 +48,7 @@ fdi::FaultMonitor monitor_of(const Rule& rule, fdi::ObserverScheme scheme)
     cli::VesselInput input = cli::load_vessel("").value();
     input.false_alarm_probability = false_alarm;
     input.sigma = {noise};
-    input.model_error = rule.told;
+    input.model_error = rule.allowed;
     if (rule.threshold > 0) input.threshold = rule.threshold;
     auto detector = fdi::ObserverDetector::make(input.observers(scheme), interval_s).value();
     return fdi::FaultMonitor::make(std::move(detector), fdi::VerdictSettings{}, 2).value();

@@ -144,7 +144,7 @@ private:
         const auto operation = message["op"].get<std::string>();
         if (operation == "subscribe") return subscribe(message.value("subscriptions", Json()));
         if (operation == "unsubscribe") return unsubscribe(message.value("subscriptionIds", Json()));
-        tell(StatusLevel::warning, fmt::format("this server does not offer '{}'", operation.substr(0, 40)));
+        report(StatusLevel::warning, fmt::format("this server does not offer '{}'", operation.substr(0, 40)));
         return true;
     }
 
@@ -155,9 +155,9 @@ private:
             if (!its.is_object() || !is_id(its.value("id", Json())) || !is_id(its.value("channelId", Json()))) return false;
             const auto channel = its["channelId"].get<std::uint32_t>();
             const auto id = its["id"].get<std::uint32_t>();
-            if (channel >= viewer_channels) tell(StatusLevel::error, fmt::format("there is no channel {}", channel));
+            if (channel >= viewer_channels) report(StatusLevel::error, fmt::format("there is no channel {}", channel));
             else if (subscription_[channel] || std::ranges::find(subscription_, id) != subscription_.end())
-                tell(StatusLevel::error, fmt::format("subscription {} or channel {} is in use", id, channel));
+                report(StatusLevel::error, fmt::format("subscription {} or channel {} is in use", id, channel));
             else {
                 subscription_[channel] = id;
                 ++shared_.watched[channel];
@@ -181,7 +181,7 @@ private:
 
     static bool is_id(const Json& value) { return value.is_number_unsigned() && value.get<std::uint64_t>() <= UINT32_MAX; }
 
-    void tell(StatusLevel level, const std::string& message)
+    void report(StatusLevel level, const std::string& message)
     {
         if (waiting_.size() >= shared_.limits.waiting) ++shared_.dropped;
         else send({std::make_shared<const std::string>(dumped({{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}}))});

@@ -68,14 +68,14 @@ TEST(Trust, converges_to_the_same_attitude_in_whatever_order_verdicts_come)
             if (trial % 2 == 0)  // neighbours only: most arrive before or just after their frame
                 std::ranges::sort(shuffled, {}, [&](const FaultVerdict& v) { return v.sequence / 8; });
             CheckedIntegrator mixed = integrator_for(cluster, motion);
-            std::size_t heard = 0;
+            std::size_t received = 0;
             for (const auto& frame : frames) {
-                for (std::size_t n = random() % 3; n > 0 && heard < shuffled.size() && shuffled[heard].sequence <= frame.sequence + 30; --n)
-                    mixed.apply(shuffled[heard++]);
+                for (std::size_t n = random() % 3; n > 0 && received < shuffled.size() && shuffled[received].sequence <= frame.sequence + 30; --n)
+                    mixed.apply(shuffled[received++]);
                 mixed.add(frame);
                 if (random() % 2 == 0) mixed.work();
             }
-            for (; heard < shuffled.size(); ++heard) mixed.apply(shuffled[heard]);
+            for (; received < shuffled.size(); ++received) mixed.apply(shuffled[received]);
             finish(mixed);
             ASSERT_EQ(mixed.state().attitude, in_order.state().attitude) << "seed " << seed << ", trial " << trial;
             ASSERT_EQ(mixed.state().angle_sigma_rad, in_order.state().angle_sigma_rad) << "seed " << seed << ", trial " << trial;

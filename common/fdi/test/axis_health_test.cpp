@@ -290,8 +290,8 @@ TEST_F(AxisHealthTest, what_sends_nothing_is_never_isolated_and_returns_with_its
         const geometry::AxisVector z = cluster_.axes * wild(frame) * interval_s;
         for (std::size_t axis = 0; axis < 6; ++axis) message.increment[axis] = z(static_cast<Eigen::Index>(axis)) + noise_(random_);
         ASSERT_EQ(monitor.assess(message).isolated_mask, 0U) << frame;
-        const bool told = frame >= 320 && frame < 600;
-        if (told) {
+        const bool reported = frame >= 320 && frame < 600;
+        if (reported) {
             ASSERT_EQ(monitor.diagnosis().absent_mask, 0b001100U) << frame;
         }
         if (frame >= 620) {

@@ -56,14 +56,14 @@ TEST_P(FieldFault, is_left_out_at_once_and_named_soon_on_every_axis_of_an_uncali
         FieldScene scene(3, 40 + axis);
         scene.spoil = spoil_from_onset(axis, fault.of);
         const auto detector = detector_on(scene);
-        const Told told = play(scene, *detector, onset_s + 8);
-        ASSERT_EQ(told.named, axes_of(axis / 3));
-        EXPECT_GE(told.named_at, onset);
-        EXPECT_LE(seconds_after(told.named_at), fault.named_within_s);
-        const std::uint64_t left_out = std::min(told.provisional_at, told.named_at);
+        const Played result = play(scene, *detector, onset_s + 8);
+        ASSERT_EQ(result.named, axes_of(axis / 3));
+        EXPECT_GE(result.named_at, onset);
+        EXPECT_LE(seconds_after(result.named_at), fault.named_within_s);
+        const std::uint64_t left_out = std::min(result.provisional_at, result.named_at);
         EXPECT_GE(left_out, onset);
         EXPECT_LE(seconds_after(left_out), fault.provisional_within_s);
-        EXPECT_LE(seconds_after(told.onset), std::max(0.02, fault.provisional_within_s - 0.05)) << "contaminated frames stay in the attitude";
+        EXPECT_LE(seconds_after(result.onset), std::max(0.02, fault.provisional_within_s - 0.05)) << "contaminated frames stay in the attitude";
     }
 }
 
@@ -89,9 +89,9 @@ TEST(FieldDetector, blames_nobody_in_a_flight_of_uncalibrated_sound_instruments)
         FieldScene scene(seed % 5 == 0 ? 8 : 3, seed, differences);
         if (seed % 2 == 1) scene.motion = FieldScene::flight;  // no rest at the start
         const auto detector = detector_on(scene);
-        const Told told = play(scene, *detector, 60);
-        EXPECT_EQ(told.named, 0U);
-        EXPECT_LE(told.provisional_frames, 90U) << "of 6000";
+        const Played result = play(scene, *detector, 60);
+        EXPECT_EQ(result.named, 0U);
+        EXPECT_LE(result.provisional_frames, 90U) << "of 6000";
         EXPECT_LT(detector->largest_lasting(), 0.9);
     }
 }
@@ -124,9 +124,9 @@ TEST(FieldDetector, compares_the_two_sound_ones_afresh_after_one_that_was_faulty
             rates[1] += 9;
         };
         const auto detector = detector_on(scene);
-        const Told told = play(scene, *detector, 30);
-        EXPECT_EQ(told.named, axes_of(0));
-        EXPECT_EQ(told.ambiguous_frames, 0U);
+        const Played result = play(scene, *detector, 30);
+        EXPECT_EQ(result.named, axes_of(0));
+        EXPECT_EQ(result.ambiguous_frames, 0U);
     }
 }
 
@@ -141,10 +141,10 @@ TEST(FieldDetector, still_sees_the_two_that_are_left_disagree)
         if (sequence >= onset) rates[5] += 60;
     };
     const auto detector = detector_on(scene);
-    const Told told = play(scene, *detector, onset_s + 5);
-    EXPECT_EQ(told.named, axes_of(0));
-    EXPECT_GT(told.ambiguous_frames, 250U);
-    EXPECT_EQ(told.candidates, axes_of(1) | axes_of(2));
+    const Played result = play(scene, *detector, onset_s + 5);
+    EXPECT_EQ(result.named, axes_of(0));
+    EXPECT_GT(result.ambiguous_frames, 250U);
+    EXPECT_EQ(result.candidates, axes_of(1) | axes_of(2));
 }
 
 TEST(FieldDetector, names_each_of_two_faults_among_eight_instruments)
@@ -172,10 +172,10 @@ TEST(FieldDetector, names_the_right_instrument_in_any_mounting)
         if (axis % 3 == 1) scene.spoil = spoil_from_onset(axis, [](double rate) { return 0.8 * rate; });
         if (axis % 3 == 2) scene.spoil = spoil_from_onset(axis, [](double rate) { return -rate; });
         const auto detector = detector_on(scene);
-        const Told told = play(scene, *detector, onset_s + 8);
-        EXPECT_EQ(told.named, axes_of(axis / 3));
-        EXPECT_GE(told.named_at, onset);
-        EXPECT_LE(seconds_after(told.named_at), 1.5);
+        const Played result = play(scene, *detector, onset_s + 8);
+        EXPECT_EQ(result.named, axes_of(axis / 3));
+        EXPECT_GE(result.named_at, onset);
+        EXPECT_LE(seconds_after(result.named_at), 1.5);
     }
 }
 
@@ -191,11 +191,11 @@ TEST(FieldDetector, never_names_an_instrument_for_a_shock_of_up_to_300_ms)
             if (sequence >= onset && sequence < onset + frames) rates[axis] += size;
         };
         const auto detector = detector_on(scene);
-        const Told told = play(scene, *detector, onset_s + 4);
-        EXPECT_EQ(told.named, 0U);
-        EXPECT_EQ(told.provisional & ~axes_of(axis / 3), 0U);
+        const Played result = play(scene, *detector, onset_s + 4);
+        EXPECT_EQ(result.named, 0U);
+        EXPECT_EQ(result.provisional & ~axes_of(axis / 3), 0U);
         const bool matters = size * static_cast<double>(frames) * frame_s > 2;
-        EXPECT_TRUE(told.provisional != 0 || !matters) << "the attitude must not follow it";
+        EXPECT_TRUE(result.provisional != 0 || !matters) << "the attitude must not follow it";
     }
 }
 
@@ -204,10 +204,10 @@ TEST(FieldDetector, names_an_instrument_whose_resting_bias_lies_outside_its_clas
     FieldScene scene(3, 3);
     scene.set_bias(1, 2, -11);
     const auto detector = detector_on(scene);
-    const Told told = play(scene, *detector, 4);
-    EXPECT_EQ(told.named, axes_of(1));
-    EXPECT_LE(told.named_at, 101U);
-    EXPECT_EQ(told.onset, 0U);
+    const Played result = play(scene, *detector, 4);
+    EXPECT_EQ(result.named, axes_of(1));
+    EXPECT_LE(result.named_at, 101U);
+    EXPECT_EQ(result.onset, 0U);
 
     FieldScene within(3, 3);
     within.set_bias(1, 2, -6);
@@ -224,9 +224,9 @@ TEST(FieldDetector, names_an_instrument_whose_samples_come_one_interval_late)
         last = now;
     };
     const auto detector = detector_on(scene);
-    const Told told = play(scene, *detector, onset_s + 4);
-    EXPECT_EQ(told.named, axes_of(1));
-    EXPECT_GE(told.named_at, onset);
+    const Played result = play(scene, *detector, onset_s + 4);
+    EXPECT_EQ(result.named, axes_of(1));
+    EXPECT_GE(result.named_at, onset);
 }
 
 TEST(FieldDetector, finds_noise_that_no_window_shows)
@@ -236,9 +236,9 @@ TEST(FieldDetector, finds_noise_that_no_window_shows)
     std::normal_distribution<double> noise(0, 4);
     scene.spoil = spoil_from_onset(7, [&](double rate) { return rate + noise(random); });
     const auto detector = detector_on(scene);
-    const Told told = play(scene, *detector, onset_s + 5);
-    EXPECT_EQ(told.named, axes_of(2));
-    EXPECT_GE(told.named_at, onset);
+    const Played result = play(scene, *detector, onset_s + 5);
+    EXPECT_EQ(result.named, axes_of(2));
+    EXPECT_GE(result.named_at, onset);
 }
 
 TEST(FieldDetector, names_one_that_slowly_drifts_out_of_its_class)
@@ -246,9 +246,9 @@ TEST(FieldDetector, names_one_that_slowly_drifts_out_of_its_class)
     FieldScene scene(3, 12);
     double drift = 0;
     scene.spoil = spoil_from_onset(4, [&](double rate) { return rate + (drift += 0.1 * frame_s); });  // 0.1 deg/s per second
-    const Told told = play(scene, *detector_on(scene), onset_s + 60);
-    EXPECT_EQ(told.named, axes_of(1));
-    EXPECT_GE(told.named_at, onset);
+    const Played result = play(scene, *detector_on(scene), onset_s + 60);
+    EXPECT_EQ(result.named, axes_of(1));
+    EXPECT_GE(result.named_at, onset);
 }
 
 TEST(FieldDetector, tells_that_all_are_beyond_their_range_and_blames_nobody)
@@ -259,18 +259,18 @@ TEST(FieldDetector, tells_that_all_are_beyond_their_range_and_blames_nobody)
     };
     const auto detector = detector_on(scene);
     EXPECT_EQ(play(scene, *detector, 8).saturated_frames, 0U);
-    const Told told = play(scene, *detector, 15);
-    EXPECT_EQ(told.named, 0U);
-    EXPECT_GT(told.saturated_frames, 300U);
+    const Played result = play(scene, *detector, 15);
+    EXPECT_EQ(result.named, 0U);
+    EXPECT_GT(result.saturated_frames, 300U);
 }
 
 TEST(FieldDetector, names_one_that_is_at_its_range_alone)
 {
     FieldScene scene(3, 14);
     scene.spoil = spoil_from_onset(2, [](double) { return FieldScene::range_deg_s; });
-    const Told told = play(scene, *detector_on(scene), onset_s + 2);
-    EXPECT_EQ(told.named, axes_of(0));
-    EXPECT_EQ(told.saturated_frames, 0U);
+    const Played result = play(scene, *detector_on(scene), onset_s + 2);
+    EXPECT_EQ(result.named, axes_of(0));
+    EXPECT_EQ(result.saturated_frames, 0U);
 }
 
 /// A turn of 600 deg/s about z from 8 s to 12 s; the first instrument measures 300 deg/s at most.
@@ -296,12 +296,12 @@ TEST(FieldDetector, leaves_an_instrument_out_while_the_others_measure_more_than_
         FieldScene scene = scene_of_unequal_ranges(instruments, 15);
         const auto detector = detector_on(scene);
         EXPECT_EQ(play(scene, *detector, 8).provisional, 0U);
-        const Told turning = play(scene, *detector, 3.2);
+        const Played turning = play(scene, *detector, 3.2);
         EXPECT_EQ(turning.provisional, axes_of(0)) << instruments;
         EXPECT_NEAR(static_cast<double>(turning.provisional_from), static_cast<double>(begins), 4) << instruments;
         EXPECT_EQ(turning.diagnosis[2].kind, Diagnosis::saturated);
         EXPECT_GT(turning.provisional_frames, 250U) << "the turn is beyond 300 deg/s for 2.7 s";
-        const Told after = play(scene, *detector, 1.8);
+        const Played after = play(scene, *detector, 1.8);
         EXPECT_EQ(turning.named | after.named, 0U);
         EXPECT_LT(after.provisional_frames, 80U) << "half a second after the turn, and it is back";
     }
@@ -338,9 +338,9 @@ TEST(FieldDetector, names_an_instrument_that_ends_below_the_range_that_is_stated
 {
     FieldScene scene = scene_of_unequal_ranges(3, 15);
     scene.cluster.range.setConstant(FieldScene::range_deg_s * degree);
-    const Told told = play(scene, *detector_on(scene), 13);
-    EXPECT_EQ(told.named, axes_of(0));
-    EXPECT_GT(told.named_at, 800U) << "not before the turn";
+    const Played result = play(scene, *detector_on(scene), 13);
+    EXPECT_EQ(result.named, axes_of(0));
+    EXPECT_GT(result.named_at, 800U) << "not before the turn";
 }
 
 TEST(FieldDetector, says_of_two_instruments_that_they_disagree_and_never_which_is_wrong)
@@ -349,11 +349,11 @@ TEST(FieldDetector, says_of_two_instruments_that_they_disagree_and_never_which_i
     scene.spoil = spoil_from_onset(1, [](double rate) { return rate + 40; });
     const auto detector = detector_on(scene);
     EXPECT_EQ(play(scene, *detector, onset_s).ambiguous_frames, 0U);
-    const Told told = play(scene, *detector, 3);
-    EXPECT_EQ(told.named, 0U);
-    EXPECT_EQ(told.provisional, 0U);
-    EXPECT_GT(told.ambiguous_frames, 250U);
-    EXPECT_EQ(told.candidates, axes_of(0) | axes_of(1));
+    const Played result = play(scene, *detector, 3);
+    EXPECT_EQ(result.named, 0U);
+    EXPECT_EQ(result.provisional, 0U);
+    EXPECT_GT(result.ambiguous_frames, 250U);
+    EXPECT_EQ(result.candidates, axes_of(0) | axes_of(1));
 }
 
 TEST(FieldDetector, refuses_what_it_cannot_compare)

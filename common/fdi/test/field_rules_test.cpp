@@ -46,14 +46,14 @@ Outcomes play_all(const Scene& what, bool FieldRules::*without = nullptr)
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         FieldScene scene = what.make(seed);
         const auto detector = FieldDetector::make(what.settings, scene.cluster, rules).value();
-        const Told told = play(scene, *detector, what.seconds);
-        outcomes.named_sound += (told.named & ~what.faulty) != 0 ? 1U : 0U;
-        outcomes.named_faulty += (told.named & what.faulty) != 0 ? 1U : 0U;
-        outcomes.left_out_frames += told.provisional_frames;
+        const Played result = play(scene, *detector, what.seconds);
+        outcomes.named_sound += (result.named & ~what.faulty) != 0 ? 1U : 0U;
+        outcomes.named_faulty += (result.named & what.faulty) != 0 ? 1U : 0U;
+        outcomes.left_out_frames += result.provisional_frames;
         outcomes.largest_lasting = std::max(outcomes.largest_lasting, detector->largest_lasting());
-        const std::uint64_t out = std::min(told.provisional_at, told.named_at);
+        const std::uint64_t out = std::min(result.provisional_at, result.named_at);
         outcomes.left_out_delay = std::max(outcomes.left_out_delay, delay_of(out));
-        outcomes.named_delay = std::max(outcomes.named_delay, delay_of(told.named_at));
+        outcomes.named_delay = std::max(outcomes.named_delay, delay_of(result.named_at));
     }
     return outcomes;
 }

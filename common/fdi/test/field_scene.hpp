@@ -83,8 +83,8 @@ private:
     std::vector<Instrument> instruments_;
 };
 
-/// What a detector said while a scene was played. What it names is excluded at once, as a monitor does.
-struct Told {
+/// What a detector reported while a scene was played. What it names is excluded at once, as a monitor does.
+struct Played {
     AxisMask named = 0;
     std::uint64_t named_at = never;
     std::uint64_t onset = never;
@@ -100,46 +100,46 @@ struct Told {
     double largest_statistic = 0;
 };
 
-inline void listen(const Assessment& assessment, std::uint64_t sequence, Told& told)
+inline void listen(const Assessment& assessment, std::uint64_t sequence, Played& result)
 {
     if (assessment.provisional != 0) {
-        ++told.provisional_frames;
-        if (told.provisional_at == never) {
-            told.provisional_at = sequence;
-            told.provisional_from = assessment.provisional_from;
+        ++result.provisional_frames;
+        if (result.provisional_at == never) {
+            result.provisional_at = sequence;
+            result.provisional_from = assessment.provisional_from;
         }
-        told.provisional |= assessment.provisional;
+        result.provisional |= assessment.provisional;
     }
-    told.saturated_frames += assessment.saturated ? 1U : 0U;
-    told.degraded |= assessment.degraded;
-    told.diagnosis = assessment.diagnosis;
-    told.largest_statistic = std::max(told.largest_statistic, assessment.statistic);
+    result.saturated_frames += assessment.saturated ? 1U : 0U;
+    result.degraded |= assessment.degraded;
+    result.diagnosis = assessment.diagnosis;
+    result.largest_statistic = std::max(result.largest_statistic, assessment.statistic);
     if (assessment.outcome == Outcome::ambiguous) {
-        ++told.ambiguous_frames;
-        for (std::size_t i = 0; i < assessment.candidate_count; ++i) told.candidates |= assessment.candidate[i];
+        ++result.ambiguous_frames;
+        for (std::size_t i = 0; i < assessment.candidate_count; ++i) result.candidates |= assessment.candidate[i];
     }
 }
 
 template <class Scene>
-Told play(Scene& scene, Detector& detector, double seconds, AxisMask excluded = 0)
+Played play(Scene& scene, Detector& detector, double seconds, AxisMask excluded = 0)
 {
-    Told told;
+    Played result;
     Assessment assessment;
     const double end = scene.time_s() + seconds;
     while (scene.time_s() < end) {
         const std::uint64_t sequence = scene.sequence();
         detector.assess(scene.next(), assessment);
-        listen(assessment, sequence, told);
-        const AxisMask fresh = assessment.outcome == Outcome::isolated ? assessment.isolated & ~(told.named | excluded) : 0;
+        listen(assessment, sequence, result);
+        const AxisMask fresh = assessment.outcome == Outcome::isolated ? assessment.isolated & ~(result.named | excluded) : 0;
         if (fresh == 0) continue;
-        if (told.named_at == never) {
-            told.named_at = sequence;
-            told.onset = assessment.onset;
+        if (result.named_at == never) {
+            result.named_at = sequence;
+            result.onset = assessment.onset;
         }
-        told.named |= fresh;
-        detector.exclude(told.named | excluded);
+        result.named |= fresh;
+        detector.exclude(result.named | excluded);
     }
-    return told;
+    return result;
 }
 
 inline AxisMask axes_of(std::size_t instrument)

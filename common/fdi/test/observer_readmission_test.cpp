@@ -31,13 +31,13 @@ std::vector<Change> changes(const PaperRun& run, FaultMonitor monitor, Spoil spo
     SensorFrame frame;
     AxisMask isolated = 0;
     run.play([&](double time, const Eigen::VectorXd&, const Eigen::VectorXd& sample, double rudder) {
-        Eigen::VectorXd told = sample;
-        spoil(time, told, rudder);
+        Eigen::VectorXd measured = sample;
+        spoil(time, measured, rudder);
         frame.interval_s = run.interval_s;
         frame.valid_mask = 0b11;
         frame.known_input[0] = rudder;
-        frame.increment[0] = told(0) * run.interval_s;
-        frame.increment[1] = told(1) * run.interval_s;
+        frame.increment[0] = measured(0) * run.interval_s;
+        frame.increment[1] = measured(1) * run.interval_s;
         const AxisMask now = monitor.assess(frame).isolated_mask;
         if (now != isolated) all.push_back({time, now});
         isolated = now;

@@ -90,11 +90,11 @@ TEST_P(SkewedLayout, blames_no_sound_axis_of_a_vibrating_uncalibrated_block)
         SCOPED_TRACE("seed " + std::to_string(seed));
         SkewedScene scene = block(GetParam(), seed);
         const auto detector = detector_on(scene);
-        const Told told = play(scene, *detector, 60);
-        EXPECT_EQ(told.named, 0U);
-        EXPECT_EQ(told.ambiguous_frames, 0U);
+        const Played result = play(scene, *detector, 60);
+        EXPECT_EQ(result.named, 0U);
+        EXPECT_EQ(result.ambiguous_frames, 0U);
         EXPECT_LT(detector->largest_lasting(), 0.9);
-        left_out += told.provisional_frames;
+        left_out += result.provisional_frames;
         closest = std::max(closest, detector->largest_lasting());
     }
     const double share = left_out / (6000.0 * static_cast<double>(seeds()));
@@ -126,12 +126,12 @@ TEST_P(SkewedFault, is_left_out_at_once_and_its_axis_named_soon)
         scene.spoil = spoil_from_onset(axis, fault.of);
         const auto detector = detector_on(scene);
         EXPECT_EQ(play(scene, *detector, onset_s).named, 0U);
-        const Told told = play(scene, *detector, 8);
-        EXPECT_EQ(told.named & ~axis_bit(axis), 0U);
+        const Played result = play(scene, *detector, 8);
+        EXPECT_EQ(result.named & ~axis_bit(axis), 0U);
         ++trials;
-        right += told.named == axis_bit(axis) ? 1U : 0U;
-        if ((told.provisional & axis_bit(axis)) != 0) left_out.push_back(seconds_after(told.provisional_at));
-        if (told.named != 0) named.push_back(seconds_after(told.named_at));
+        right += result.named == axis_bit(axis) ? 1U : 0U;
+        if ((result.provisional & axis_bit(axis)) != 0) left_out.push_back(seconds_after(result.provisional_at));
+        if (result.named != 0) named.push_back(seconds_after(result.named_at));
     }
     EXPECT_GE(right, 0.95 * trials) << "of " << trials;
     EXPECT_LE(median_of(left_out), fault.left_out_s);
@@ -170,10 +170,10 @@ TEST_P(SkewedLayout, never_names_an_axis_for_a_shock_of_up_to_300_ms)
         };
         const auto detector = detector_on(scene);
         play(scene, *detector, onset_s);
-        const Told told = play(scene, *detector, 4);
-        EXPECT_EQ(told.named, 0U);
+        const Played result = play(scene, *detector, 4);
+        EXPECT_EQ(result.named, 0U);
         const bool matters = size * static_cast<double>(frames) * frame_s > 2;
-        EXPECT_TRUE((told.provisional & axis_bit(axis)) != 0 || !matters) << "the attitude must not follow it";
+        EXPECT_TRUE((result.provisional & axis_bit(axis)) != 0 || !matters) << "the attitude must not follow it";
     }
 }
 
@@ -182,12 +182,12 @@ TEST_P(SkewedLayout, says_what_is_wrong_with_the_axis_and_how_much)
     SkewedScene scene = block(GetParam(), 4);
     scene.spoil = spoil_from_onset(2, [](double rate) { return 0.47 * rate - 10.7; });
     const auto detector = detector_on(scene);
-    const Told told = play(scene, *detector, onset_s + 20);
-    EXPECT_EQ(told.named, axis_bit(2));
-    EXPECT_EQ(told.diagnosis[2].kind, Diagnosis::gain);
-    EXPECT_NEAR(told.diagnosis[2].size, 0.47, 0.03);
-    EXPECT_NEAR(told.diagnosis[2].bias / degree, -10.7, 2.5);
-    EXPECT_LT(std::abs(told.diagnosis[2].size - 0.47), 4 * told.diagnosis[2].sigma + 0.01);
+    const Played result = play(scene, *detector, onset_s + 20);
+    EXPECT_EQ(result.named, axis_bit(2));
+    EXPECT_EQ(result.diagnosis[2].kind, Diagnosis::gain);
+    EXPECT_NEAR(result.diagnosis[2].size, 0.47, 0.03);
+    EXPECT_NEAR(result.diagnosis[2].bias / degree, -10.7, 2.5);
+    EXPECT_LT(std::abs(result.diagnosis[2].size - 0.47), 4 * result.diagnosis[2].sigma + 0.01);
 }
 
 TEST_P(SkewedLayout, blames_nobody_for_missing_data_and_takes_the_axis_back)
@@ -206,10 +206,10 @@ TEST(SkewedDetector, names_an_axis_whose_resting_bias_lies_outside_its_class)
 {
     SkewedScene scene("cone-6", 2);
     scene.set_bias(3, -14);
-    const Told told = play(scene, *detector_on(scene), 4);
-    EXPECT_EQ(told.named, axis_bit(3));
-    EXPECT_LE(told.named_at, 101U);
-    EXPECT_EQ(told.onset, 0U);
+    const Played result = play(scene, *detector_on(scene), 4);
+    EXPECT_EQ(result.named, axis_bit(3));
+    EXPECT_LE(result.named_at, 101U);
+    EXPECT_EQ(result.onset, 0U);
 
     SkewedScene within("cone-6", 2);
     within.set_bias(3, -6);
@@ -239,10 +239,10 @@ TEST(SkewedDetector, says_of_the_four_that_are_left_that_they_disagree_and_never
     EXPECT_EQ(play(scene, *detector, 20).named, axis_bit(0));
     EXPECT_EQ(play(scene, *detector, 10, axis_bit(0)).ambiguous_frames, 0U) << "four sound ones";
     EXPECT_EQ(detector->detectable_remaining(), 1U);
-    const Told told = play(scene, *detector, 3, axis_bit(0));
-    EXPECT_EQ(told.named, 0U);
-    EXPECT_GT(told.ambiguous_frames, 200U);
-    EXPECT_EQ(told.candidates, scene.cluster.all() & ~axis_bit(0));
+    const Played result = play(scene, *detector, 3, axis_bit(0));
+    EXPECT_EQ(result.named, 0U);
+    EXPECT_GT(result.ambiguous_frames, 200U);
+    EXPECT_EQ(result.candidates, scene.cluster.all() & ~axis_bit(0));
 }
 
 TEST(SkewedDetector, says_of_two_parallel_axes_that_either_may_be_wrong)
@@ -251,10 +251,10 @@ TEST(SkewedDetector, says_of_two_parallel_axes_that_either_may_be_wrong)
     scene.spoil = spoil_from_onset(3, [](double rate) { return rate + 20; });
     const auto detector = detector_on(scene);
     EXPECT_EQ(play(scene, *detector, onset_s).ambiguous_frames, 0U);
-    const Told told = play(scene, *detector, 4);
-    EXPECT_EQ(told.named, 0U);
-    EXPECT_GT(told.ambiguous_frames, 100U);
-    EXPECT_EQ(told.candidates, axis_bit(0) | axis_bit(3));
+    const Played result = play(scene, *detector, 4);
+    EXPECT_EQ(result.named, 0U);
+    EXPECT_GT(result.ambiguous_frames, 100U);
+    EXPECT_EQ(result.candidates, axis_bit(0) | axis_bit(3));
 }
 
 TEST(SkewedDetector, finds_noise_that_no_window_shows)
@@ -273,9 +273,9 @@ TEST(SkewedDetector, names_one_that_slowly_drifts_out_of_its_class)
     SkewedScene scene = block("cone-6", 4);
     double drift = 0;
     scene.spoil = spoil_from_onset(4, [&](double rate) { return rate + (drift += 0.1 * frame_s); });  // 0.1 deg/s per second
-    const Told told = play(scene, *detector_on(scene), onset_s + 80);
-    EXPECT_EQ(told.named, axis_bit(4));
-    EXPECT_GE(told.named_at, onset);
+    const Played result = play(scene, *detector_on(scene), onset_s + 80);
+    EXPECT_EQ(result.named, axis_bit(4));
+    EXPECT_GE(result.named_at, onset);
 }
 
 TEST(SkewedDetector, names_one_that_is_at_its_range_alone_and_nobody_where_the_motion_is_beyond_it)
@@ -290,9 +290,9 @@ TEST(SkewedDetector, names_one_that_is_at_its_range_alone_and_nobody_where_the_m
     };
     const auto detector = detector_on(fast);
     EXPECT_EQ(play(fast, *detector, 8).saturated_frames, 0U);
-    const Told told = play(fast, *detector, 15);
-    EXPECT_EQ(told.named, 0U);
-    EXPECT_GT(told.saturated_frames, 200U);
+    const Played result = play(fast, *detector, 15);
+    EXPECT_EQ(result.named, 0U);
+    EXPECT_GT(result.saturated_frames, 200U);
 }
 
 TEST(SkewedDetector, takes_the_usual_range_of_its_class_where_none_is_stated)

@@ -64,7 +64,7 @@ TEST_F(ForeignPublisher, that_refers_to_a_revision_nobody_described_is_told_whic
     EXPECT_THAT(said(), AllOf(HasSubstr("revision 9"), HasSubstr("1 is the newest")));
 
     intake.describe(description(1, 9));
-    EXPECT_TRUE(passes(frame(110)) || intake.counters().accepted > 0) << "and is heard as soon as the description comes";
+    EXPECT_TRUE(passes(frame(110)) || intake.counters().accepted > 0) << "and is received as soon as the description comes";
 }
 
 TEST_F(ForeignPublisher, that_never_described_itself_does_not_hold_up_the_next_one)

@@ -104,7 +104,7 @@ std::filesystem::path run_directory()
 
 std::optional<Heartbeat> Heartbeat::open(const std::string& service)
 {
-    std::error_code ignored;  // open() below tells
+    std::error_code ignored;  // open() below reports it
     std::filesystem::create_directories(run_directory(), ignored);
     const int file = ::open(file_of(stem_of(service)).c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
     if (file < 0) return std::nullopt;

@@ -41,20 +41,20 @@ public:
     /// From the first SUSPECT until settle time.
     bool settling(Identity identity) const { return identity.epoch == settle_epoch_ && identity.sequence < settle_until_; }
 
-    bool speaks(std::size_t lane, std::int64_t now_ns) const;
-    bool has_judged(std::size_t lane, Identity identity) const { return voice_[lane].identity >= identity; }
+    bool reports(std::size_t lane, std::int64_t now_ns) const;
+    bool has_judged(std::size_t lane, Identity identity) const { return lane_reports_[lane].identity >= identity; }
 
     /// The lane, or its detector, has isolated axes that a majority reports and that `left_out` lacks.
     bool knows_better(std::size_t lane, AxisMask left_out, std::int64_t now_ns) const;
 
     /// What the lane's detector has isolated or the lane itself leaves out for good.
-    AxisMask held_out(std::size_t lane) const { return voice_[lane].isolated | voice_[lane].applied; }
+    AxisMask held_out(std::size_t lane) const { return lane_reports_[lane].isolated | lane_reports_[lane].applied; }
 
     /// The detector says that no further fault could be detected.
     bool redundancy_exhausted(std::size_t lane) const;
 
 private:
-    struct Voice {
+    struct LaneReport {
         Identity identity;
         std::int64_t received_ns = 0;
         std::uint64_t opened_at = 0;  ///< frame at which this lane alone last opened the settle time
@@ -69,11 +69,11 @@ private:
         bool opened_once = false;
     };
 
-    AxisMask reported(const Voice& voice, std::int64_t now_ns) const;
-    void open(Voice& voice, Identity identity, AxisMask axes, std::int64_t now_ns);
-    bool fresh(const Voice& voice, std::int64_t now_ns) const { return voice.received && now_ns - voice.received_ns <= silence_ns_; }
+    AxisMask reported(const LaneReport& voice, std::int64_t now_ns) const;
+    void open(LaneReport& voice, Identity identity, AxisMask axes, std::int64_t now_ns);
+    bool fresh(const LaneReport& voice, std::int64_t now_ns) const { return voice.received && now_ns - voice.received_ns <= silence_ns_; }
 
-    std::array<Voice, max_lanes> voice_{};
+    std::array<LaneReport, max_lanes> lane_reports_{};
     std::size_t lanes_;
     std::size_t majority_;
     unsigned settle_frames_;

@@ -161,7 +161,7 @@ bool Frames::is_complete(Identity identity, bool several_groups, std::int64_t no
     for (LaneIndex lane = 0; lane < board_.size(); ++lane) {
         if (board_.lane(lane).blocked()) continue;
         if (!board_.lane(lane).is_past(identity)) return false;
-        if (several_groups && corroboration_.speaks(lane, now_ns) && !corroboration_.has_judged(lane, identity)) return false;
+        if (several_groups && corroboration_.reports(lane, now_ns) && !corroboration_.has_judged(lane, identity)) return false;
     }
     return true;
 }

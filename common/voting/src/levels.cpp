@@ -9,14 +9,14 @@ void Levels::publish(LaneMask vouching)
 {
     frames_ = std::min(frames_ + 1, window_ + 1);
     for (std::size_t lane = 0; lane < lanes_; ++lane) votes_[lane] = votes_[lane] << 1 | (vouching >> lane & 1U);
-    tell();
+    count_standing();
 }
 
 void Levels::late_vote(std::size_t lane, std::uint64_t age)
 {
     if (age >= frames_) return;
     votes_[lane] |= std::uint64_t{1} << age;
-    tell();
+    count_standing();
 }
 
 void Levels::clear()
@@ -33,16 +33,16 @@ VoteLevel Levels::level(LaneMask excluded, bool redundancy_left) const
     return standing == lanes_ && redundancy_left ? VoteLevel::full : VoteLevel::degraded;
 }
 
-void Levels::tell()
+void Levels::count_standing()
 {
     const bool first = frames_ <= 1;
-    const unsigned told = first ? frames_ : frames_ - 1;
-    const std::uint64_t mask = ((std::uint64_t{1} << told) - 1) << (first ? 0 : 1);
+    const unsigned counted = first ? frames_ : frames_ - 1;
+    const std::uint64_t mask = ((std::uint64_t{1} << counted) - 1) << (first ? 0 : 1);
     for (std::size_t lane = 0; lane < lanes_; ++lane) {
         const auto votes = static_cast<unsigned>(std::popcount(votes_[lane] & mask));
         const LaneMask bit = LaneMask{1} << lane;
-        if (votes * 10 >= told * 8) standing_ |= bit;
-        if (votes * 2 <= told) standing_ &= ~bit;
+        if (votes * 10 >= counted * 8) standing_ |= bit;
+        if (votes * 2 <= counted) standing_ &= ~bit;
     }
 }
 

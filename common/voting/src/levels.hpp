@@ -32,7 +32,7 @@ public:
     VoteLevel level(LaneMask excluded, bool redundancy_left) const;
 
 private:
-    void tell();
+    void count_standing();
 
     std::array<std::uint64_t, max_lanes> votes_{};  ///< bit 0 = the newest frame
     std::size_t lanes_;

@@ -233,9 +233,9 @@ TEST(Isolation, that_verdicts_tell_before_the_frames_arrive_leaves_no_frame_out)
 {
     for (const std::uint64_t applied : {52U, 53U}) {
         Scene scene;
-        const Fault told = isolated_by_all(52), made = isolated_by_all(applied);
+        const Fault reported = isolated_by_all(52), made = isolated_by_all(applied);
         for (std::uint64_t sequence = 1; sequence < 100; ++sequence) {
-            for (std::size_t lane = 0; lane < 3; ++lane) scene.at(Scene::time_of(sequence), told.verdict(lane, sequence));
+            for (std::size_t lane = 0; lane < 3; ++lane) scene.at(Scene::time_of(sequence), reported.verdict(lane, sequence));
             for (std::size_t lane = 0; lane < 3; ++lane) scene.at(Scene::time_of(sequence) + 2 * ms, made.sample(lane, sequence - 1));
         }
         ASSERT_EQ(scene.outputs.size(), 99U) << "applied from frame " << applied << " on";
@@ -250,9 +250,9 @@ TEST(Isolation, that_verdicts_tell_before_the_frames_arrive_leaves_no_frame_out)
 TEST(Isolation, that_detectors_tell_and_no_lane_ever_applies_is_never_put_out)
 {
     Scene scene;
-    const Fault told = isolated_by_all(52), made = isolated_by_all(never);
+    const Fault reported = isolated_by_all(52), made = isolated_by_all(never);
     for (std::uint64_t sequence = 0; sequence < 100; ++sequence) {
-        for (std::size_t lane = 0; lane < 3; ++lane) scene.at(Scene::time_of(sequence), told.verdict(lane, sequence));
+        for (std::size_t lane = 0; lane < 3; ++lane) scene.at(Scene::time_of(sequence), reported.verdict(lane, sequence));
         for (std::size_t lane = 0; lane < 3; ++lane) scene.at(Scene::time_of(sequence), made.sample(lane, sequence));
     }
     EXPECT_EQ(scene.last().sequence, 51U);

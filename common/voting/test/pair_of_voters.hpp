@@ -18,11 +18,11 @@ struct Pair {
 
     void exchange()
     {
-        for (; strong_alive && strong_told < strong.outputs.size(); ++strong_told) tell(weak, weak_alive, strong.outputs[strong_told]);
-        for (; weak_alive && weak_told < weak.outputs.size(); ++weak_told) tell(strong, strong_alive, weak.outputs[weak_told]);
+        for (; strong_alive && strong_delivered < strong.outputs.size(); ++strong_delivered) deliver_output(weak, weak_alive, strong.outputs[strong_delivered]);
+        for (; weak_alive && weak_delivered < weak.outputs.size(); ++weak_delivered) deliver_output(strong, strong_alive, weak.outputs[weak_delivered]);
     }
 
-    void tell(Scene& scene, bool alive, const VotedAttitude& output) const
+    void deliver_output(Scene& scene, bool alive, const VotedAttitude& output) const
     {
         if (alive) scene.at(std::max(weak.now, strong.now), output);
     }
@@ -47,7 +47,7 @@ struct Pair {
     }
 
     Scene strong, weak;
-    std::size_t strong_told = 0, weak_told = 0;
+    std::size_t strong_delivered = 0, weak_delivered = 0;
     bool strong_alive = true, weak_alive = true;
 };
 

@@ -92,8 +92,8 @@ TEST(Newcomers, need_a_majority_or_the_silence_of_the_others)
     newcomers.hold(0, sample_of(0, 0, 2000), 1 * ms);
     EXPECT_FALSE(newcomers.accepted(2 * ms));
     newcomers.expected(1, true, 90 * ms);
-    EXPECT_FALSE(newcomers.accepted(150 * ms)) << "another lane still speaks of the old timeline";
-    EXPECT_TRUE(newcomers.accepted(191 * ms)) << "nobody speaks of the old timeline any more";
+    EXPECT_FALSE(newcomers.accepted(150 * ms)) << "another lane is still on the old timeline";
+    EXPECT_TRUE(newcomers.accepted(191 * ms)) << "no lane is on the old timeline any more";
 
     Newcomers majority(3, 2, 100 * ms);
     majority.hold(0, sample_of(0, 1, 2000), 1 * ms);

@@ -46,14 +46,14 @@ TEST(TwoVoters, publish_the_same_in_step)
 TEST(TwoVoters, write_no_frame_both_while_they_have_not_found_each_other)
 {
     Pair pair;
-    pair.strong_told = pair.weak_told = 1'000'000;  // discovery takes its time
+    pair.strong_delivered = pair.weak_delivered = 1'000'000;  // discovery takes its time
     pair.frames(0, 199);
     ASSERT_EQ(pair.strong.owned.size(), 180U);
     EXPECT_FALSE(pair.weak.voter.may_own());
     EXPECT_TRUE(pair.weak.owned.empty());
 
-    pair.strong_told = pair.strong.outputs.size();
-    pair.weak_told = pair.weak.outputs.size();
+    pair.strong_delivered = pair.strong.outputs.size();
+    pair.weak_delivered = pair.weak.outputs.size();
     pair.frames(200, 299);
     EXPECT_TRUE(pair.weak.voter.may_own());
     ASSERT_FALSE(pair.weak.owned.empty()) << "it stands by, for readers that lose the stronger one";
@@ -237,7 +237,7 @@ TEST(TwoVoters, let_a_restarted_voter_continue_what_the_other_did)
 
     Scene restarted(settings_of(3, {1, 2}, 1), Scene::time_of(100) - 3 * ms);
     std::swap(pair.strong, restarted);
-    pair.strong_told = 0;
+    pair.strong_delivered = 0;
     pair.strong_alive = true;
     pair.frames(100, 299, [](std::size_t lane, AttitudeState& sample) { return lanes_apart(lane, sample) && lane != 0; });
     const VotedAttitude& first = pair.strong.outputs.front();
@@ -272,7 +272,7 @@ TEST(TwoVoters, let_one_that_starts_in_the_middle_of_a_stream_wait_for_the_other
     }
     ASSERT_FALSE(scene.outputs.empty());
     for (const VotedAttitude& output : scene.outputs) EXPECT_EQ(output.output_sequence, output.sequence + 55);
-    EXPECT_LE(scene.outputs.front().sequence, 412U) << "one lease after it was heard first";
+    EXPECT_LE(scene.outputs.front().sequence, 412U) << "one lease after its first sample";
     EXPECT_EQ(scene.outputs.back().primary_lane, 2U);
 }
 
@@ -298,7 +298,7 @@ TEST(TwoVoters, never_let_a_stopped_one_take_the_output_back_in_time)
     Pair pair;
     pair.frames(0, 99);
     pair.strong_alive = false;  // stopped, not dead: what comes meanwhile waits for it
-    const std::size_t told = pair.weak.outputs.size();
+    const std::size_t weak_before = pair.weak.outputs.size();
     pair.frames(100, 499);
     const std::size_t before = pair.strong.outputs.size();
     const std::size_t owned_before = pair.strong.owned.size();
@@ -307,10 +307,10 @@ TEST(TwoVoters, never_let_a_stopped_one_take_the_output_back_in_time)
     for (std::uint64_t sequence = 436; sequence < 500; ++sequence) {
         for (std::size_t lane = 0; lane < 3; ++lane) pair.strong.at(wakes, sample_of(lane, sequence));
     }
-    for (std::size_t output = told; output < pair.weak.outputs.size(); ++output) {
+    for (std::size_t output = weak_before; output < pair.weak.outputs.size(); ++output) {
         if (output + 64 >= pair.weak.outputs.size()) pair.strong.at(wakes, pair.weak.outputs[output]);
     }
-    pair.weak_told = pair.weak.outputs.size();
+    pair.weak_delivered = pair.weak.outputs.size();
     pair.strong_alive = true;
     pair.frames(500, 599);
     ASSERT_GT(pair.strong.outputs.size(), before);

@@ -21,7 +21,7 @@ TEST(Voter, publishes_the_primarys_attitude_and_never_an_average)
         EXPECT_EQ(output.attitude, truth(output.sequence));
         EXPECT_EQ(output.primary_lane, 1U);
     }
-    EXPECT_NEAR(scene.last().spread_rad, 2e-5, 1e-9) << "of the two lanes heard when it went out";
+    EXPECT_NEAR(scene.last().spread_rad, 2e-5, 1e-9) << "of the two lanes received when it went out";
 }
 
 TEST(Voter, publishes_as_soon_as_a_majority_vouches)
@@ -178,11 +178,11 @@ TEST(Voter, tells_in_plain_words_what_happened)
     Scene scene;
     scene.frames(0, 49);
     scene.frames(50, 99, all_but(0));
-    std::string told;
-    for (const VoterEvent& event : scene.events) told += std::string(event.text.data()) + "\n";
-    EXPECT_NE(told.find("primary lane a -> b: it is silent; the attitude moved by 0 deg"), std::string::npos) << told;
-    EXPECT_NE(told.find("lane a does not count: it is silent"), std::string::npos) << told;
-    EXPECT_NE(told.find("level FULL -> DEGRADED: 2 of 3 lanes stand behind the output"), std::string::npos) << told;
+    std::string texts;
+    for (const VoterEvent& event : scene.events) texts += std::string(event.text.data()) + "\n";
+    EXPECT_NE(texts.find("primary lane a -> b: it is silent; the attitude moved by 0 deg"), std::string::npos) << texts;
+    EXPECT_NE(texts.find("lane a does not count: it is silent"), std::string::npos) << texts;
+    EXPECT_NE(texts.find("level FULL -> DEGRADED: 2 of 3 lanes stand behind the output"), std::string::npos) << texts;
 }
 
 TEST(Voter, allocates_nothing_after_its_construction)

@@ -101,7 +101,7 @@ TEST_F(OrderTest, is_done_when_everybody_has_done_it)
     detectors.emplace_back(hub, clock, 2);
     EXPECT_EQ(give(), 0);
     for (const auto& detector : detectors) EXPECT_EQ(detector.obeyed, 1U);
-    EXPECT_EQ(detectors.front().words, 1U) << "nobody had to be told twice";
+    EXPECT_EQ(detectors.front().words, 1U) << "none was ordered twice";
 }
 
 TEST_F(OrderTest, is_repeated_for_who_came_after_its_first_word)
@@ -112,7 +112,7 @@ TEST_F(OrderTest, is_repeated_for_who_came_after_its_first_word)
     EXPECT_EQ(give(start_the_second), 0);
     ASSERT_EQ(detectors.size(), 2U);
     EXPECT_EQ(detectors.back().obeyed, 1U);
-    EXPECT_EQ(detectors.front().obeyed, 1U) << "who has heard it does not do it again";
+    EXPECT_EQ(detectors.front().obeyed, 1U) << "a detector that has received it does not do it again";
 }
 
 TEST_F(OrderTest, of_a_secured_system_looks_longer_for_whom_it_concerns)

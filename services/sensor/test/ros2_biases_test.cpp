@@ -56,7 +56,7 @@ protected:
             }
             while (loop.dispatch()) continue;
             if (source->advance_to(frames.size(), frame, truth) == Advance::frame) frames.push_back(frame);
-            while (auto notice = source->notice()) told += notice->text + "\n";
+            while (auto notice = source->notice()) notices += notice->text + "\n";
         }
         return frames;
     }
@@ -76,7 +76,7 @@ protected:
     const std::atomic<bool> never_stop{false};
     runtime::EventLoop loop{*bus, clock, never_stop};
     std::unique_ptr<FrameSource> source;
-    std::string told;
+    std::string notices;
     std::mt19937_64 random{9};
     std::normal_distribution<double> normal;
 };
@@ -95,8 +95,8 @@ TEST_F(Ros2Biases, are_learned_at_rest_before_the_first_frame_and_stand_in_its_d
     }
     for (const SensorFrame& frame : frames) ASSERT_EQ(frame.description_revision, 2U);
     EXPECT_EQ(frames.front().sequence, 0U);
-    EXPECT_THAT(told, HasSubstr("front: bias at rest +0.3"));
-    EXPECT_THAT(told, HasSubstr("rear: bias at rest -0.6"));
+    EXPECT_THAT(notices, HasSubstr("front: bias at rest +0.3"));
+    EXPECT_THAT(notices, HasSubstr("rear: bias at rest -0.6"));
 }
 
 TEST_F(Ros2Biases, are_not_learned_in_motion_and_the_frames_do_not_wait)
@@ -107,7 +107,7 @@ TEST_F(Ros2Biases, are_not_learned_in_motion_and_the_frames_do_not_wait)
     EXPECT_GT(frames.size(), 400U);
     EXPECT_EQ(source->description().revision, 1U);
     EXPECT_EQ(source->description().bias[0], 0);
-    EXPECT_THAT(told, HasSubstr("the IMUs move at the start"));
+    EXPECT_THAT(notices, HasSubstr("the IMUs move at the start"));
 }
 
 TEST_F(Ros2Biases, and_gains_are_those_of_the_calibration_where_there_is_one)

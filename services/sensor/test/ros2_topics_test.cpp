@@ -49,12 +49,12 @@ protected:
 TEST_F(Ros2Topics, without_a_publisher_are_named_once_within_five_seconds)
 {
     EXPECT_TRUE(notices_at(2 * second_ns).empty());
-    const auto told = notices_at(4 * second_ns);
-    ASSERT_EQ(told.size(), 2U);
-    EXPECT_THAT(told[0].text, AllOf(HasSubstr("front: nobody publishes sensor_msgs/Imu on /front/data"), HasSubstr("ROS_DOMAIN_ID (here 17)")));
-    EXPECT_EQ(told[0].axes, 0b000111U);
-    EXPECT_EQ(told[1].axes, 0b111000U);
-    EXPECT_EQ(told[1].severity, Severity::warning_high);
+    const auto notices = notices_at(4 * second_ns);
+    ASSERT_EQ(notices.size(), 2U);
+    EXPECT_THAT(notices[0].text, AllOf(HasSubstr("front: nobody publishes sensor_msgs/Imu on /front/data"), HasSubstr("ROS_DOMAIN_ID (here 17)")));
+    EXPECT_EQ(notices[0].axes, 0b000111U);
+    EXPECT_EQ(notices[1].axes, 0b111000U);
+    EXPECT_EQ(notices[1].severity, Severity::warning_high);
     EXPECT_TRUE(notices_at(20 * second_ns).empty());
 }
 
@@ -63,18 +63,18 @@ TEST_F(Ros2Topics, are_reported_when_their_publisher_comes_late)
     notices_at(4 * second_ns);
     auto publisher = robot->advertise(bus::ros2::imu("rt/rear/data", bus::ros2::offered));
     publisher.publish({.stamp_ns = second_ns});
-    const auto told = notices_at(5 * second_ns);
-    ASSERT_EQ(told.size(), 1U);
-    EXPECT_EQ(told[0].text, "rear: /rear/data is published now");
-    EXPECT_EQ(told[0].severity, Severity::info);
+    const auto notices = notices_at(5 * second_ns);
+    ASSERT_EQ(notices.size(), 1U);
+    EXPECT_EQ(notices[0].text, "rear: /rear/data is published now");
+    EXPECT_EQ(notices[0].severity, Severity::info);
 }
 
 TEST_F(Ros2Topics, with_a_publisher_that_sends_nothing_are_told_from_those_without)
 {
     auto publisher = robot->advertise(bus::ros2::imu("rt/rear/data", bus::ros2::offered));
-    const auto told = notices_at(4 * second_ns);
-    ASSERT_EQ(told.size(), 2U);
-    EXPECT_EQ(told[1].text, "rear: /rear/data has a publisher that sends nothing");
+    const auto notices = notices_at(4 * second_ns);
+    ASSERT_EQ(notices.size(), 2U);
+    EXPECT_EQ(notices[1].text, "rear: /rear/data has a publisher that sends nothing");
 }
 
 TEST_F(Ros2Topics, whose_messages_come_are_not_named)

@@ -91,14 +91,21 @@ TEST(HandshakePause, lasts_from_the_last_message_on)
     EXPECT_GE(std::chrono::steady_clock::now() - begin, HandshakePause::length);
 }
 
-TEST(HandshakePause, begins_anew_with_a_message_that_is_sent_while_a_received_one_waits)
+/// What a received message did that waited for a lock, while another message was sent.
+struct Wait {
+    std::chrono::nanoseconds whole{0};
+    std::chrono::nanoseconds after_the_other{0};
+};
+
+Wait waited()
 {
     HandshakePause pause;
     std::mutex mutex;
     std::unique_lock held{mutex};
-    std::chrono::steady_clock::time_point passed;
+    std::chrono::steady_clock::time_point begun, passed;
     std::thread receiver{[&] {
         std::unique_lock lock{mutex, std::defer_lock};
+        begun = std::chrono::steady_clock::now();
         pause.lock_after(lock);
         passed = std::chrono::steady_clock::now();
     }};
@@ -107,7 +114,18 @@ TEST(HandshakePause, begins_anew_with_a_message_that_is_sent_while_a_received_on
     pause.sent();
     held.unlock();
     receiver.join();
-    EXPECT_GE(passed - sent, HandshakePause::length);
+    return {passed - begun, passed - sent};
+}
+
+TEST(HandshakePause, begins_anew_with_a_message_that_is_sent_while_a_received_one_waits)
+{
+    for (unsigned attempt = 0; attempt < 100; ++attempt) {
+        const Wait wait = waited();
+        if (wait.whole >= HandshakePause::longest) continue;  // as long as any message waits: the machine kept this test waiting
+        EXPECT_GE(wait.after_the_other, HandshakePause::length);
+        return;
+    }
+    GTEST_SKIP() << "the machine is too busy to tell";
 }
 
 /// @returns whether other datagrams may pass while a received message waits, although messages are sent without end.

@@ -255,11 +255,11 @@ Poles ObserverBank::poles(std::size_t observer) const
 
 std::uint64_t ObserverBank::start(const Outputs& samples, AxisMask valid)
 {
-    Outputs told = samples;
-    for (Eigen::Index channel = 0; channel < told.size(); ++channel)
-        if (!has_axis(valid, static_cast<std::size_t>(channel))) told(channel) = 0;
+    Outputs usable = samples;
+    for (Eigen::Index channel = 0; channel < usable.size(); ++channel)
+        if (!has_axis(valid, static_cast<std::size_t>(channel))) usable(channel) = 0;
     for (Observer& observer : observers_) {
-        observer.estimate = from_samples_.lazyProduct(told);
+        observer.estimate = from_samples_.lazyProduct(usable);
         observer.residual.setZero();
         observer.sensitivity.setZero();
         observer.covariance = from_samples_.lazyProduct(SmallMatrix(variance_.asDiagonal() * from_samples_.transpose()));
