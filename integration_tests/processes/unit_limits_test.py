@@ -75,7 +75,8 @@ class UnitLimits(ProcessTest):
         self.assertEqual(found, set())
 
     def test_are_seen_to_be_broken_by_a_program_that_breaks_them(self):
-        broken = "import os, socket, mmap; os.chown('.', -1, -1); mmap.mmap(-1, 4096, prot=7); socket.socket(socket.AF_PACKET)"
+        own = str(self.run_directory)  # the sources may be read-only
+        broken = f"import os, socket, mmap; os.chown({own!r}, -1, -1); mmap.mmap(-1, 4096, prot=7); socket.socket(socket.AF_PACKET)"
         found, _ = denied(self.units[0], [sys.executable, "-c", broken], self.run_directory, self.environment, timeout=30)
         self.assertEqual(found, {"chown", "socket of AF_PACKET", "writable code"})
 
