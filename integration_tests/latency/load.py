@@ -9,6 +9,7 @@ import argparse
 import contextlib
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -98,6 +99,8 @@ def main():
     parser.add_argument("--priority", type=int, help="the system file's `priority`; the load has none")
     parser.add_argument("--domain", type=int, default=58)
     options = parser.parse_args()
+    if min(options.free) < 1 and not shutil.which("stress-ng"):
+        parser.error("there is no stress-ng to make a load: install Debian's package stress-ng, or state --free 1")
     if options.processors:
         os.sched_setaffinity(0, options.processors)
     print("| " + " | ".join(HEADER) + " |\n|" + "---|" * len(HEADER), flush=True)

@@ -6,7 +6,9 @@ import json
 import pathlib
 import sys
 
-from integration_tests.latency import table
+from integration_tests.latency import graphs, table
+
+CASES = [{"transport": name, "rate_hz": rate} for rate in (200, 1000) for name, (_, floor) in graphs.TRANSPORTS.items() if floor]
 
 
 def held(values, limit):
@@ -23,16 +25,27 @@ def row(found):
     return cells + ["in some run" if any(table.lost_by_floor(result) for result in found) else "no"]
 
 
+def read(name):
+    """A run's results; ends the program where they are none of `run.py --only transports`."""
+    try:
+        results = json.loads(pathlib.Path(name).read_text())
+        cases = [result["case"] for result in results["transports"]]
+    except (OSError, ValueError, KeyError, TypeError) as problem:
+        sys.exit(f"{name}: {problem!r}; state the JSON of `run.py --only transports`")
+    if missing := [table.name_of(case) for case in CASES if case not in cases]:
+        sys.exit(f"{name}: no {'; '.join(missing)}; run it again with a larger --limit")
+    return results
+
+
 def main():
-    runs = [json.loads(pathlib.Path(name).read_text()) for name in sys.argv[1:]]
+    runs = [read(name) for name in sys.argv[1:]]
     if not runs:
         sys.exit(__doc__)
     for run in runs:
         about = run["machine"]
         print(f"* {about['date']} {about['time_utc']} UTC: {about['rounds']} rounds of {about['seconds']} s, load {about['load_before'][0]:.1f} at the start")
     print()
-    cases = [result["case"] for result in runs[0]["transports"] if "floor" in result["rounds"][0]]
-    body = [row([table.find(run["transports"], **case) for run in runs]) for case in cases]
+    body = [row([table.find(run["transports"], **case) for run in runs]) for case in CASES]
     bounds = [text for quantile, limit in table.MARGINS.items() for text in (f"{quantile} / floor", f"<= {limit} in each run")]
     print("\n".join(table.rows(["pipeline", *bounds, "p50 / floor that waits", "floor overrun"], body)))
     return 0

@@ -7,6 +7,7 @@ import argparse
 import collections
 import os
 import re
+import shutil
 import statistics
 import subprocess
 import sys
@@ -92,6 +93,12 @@ def parse():
     parser.add_argument("--transports", default="UDP, Cyclone DDS; iceoryx, Cyclone DDS", help="names of the table, with ; between")
     parser.add_argument("--domain", type=int, default=30)
     options = parser.parse_args()
+    options.transports = options.transports.split("; ")
+    known = [name for name, (_, floor) in graphs.TRANSPORTS.items() if floor]
+    if unknown := set(options.transports) - set(known):
+        parser.error(f"--transports {'; '.join(sorted(unknown))}: it knows {'; '.join(known)}")
+    if not shutil.which("perf"):
+        parser.error("there is no perf: install Debian's package linux-perf")
     options.limit = 30
     return options
 
@@ -102,7 +109,7 @@ def main():
     body = []
     with run.Roudi():
         for rate in options.rates:
-            for transport in options.transports.split("; "):
+            for transport in options.transports:
                 case = {"transport": transport, "rate_hz": rate}
                 rounds = {who: [] for who in WHOM}
                 for _ in range(options.rounds):

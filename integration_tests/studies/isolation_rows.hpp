@@ -29,10 +29,10 @@ using Published = std::array<std::array<std::optional<double>, isolation_cases.s
 
 struct IsolationRow {
     enum class Kind : std::uint8_t {
-        known_count,     ///< knows the number of faults: a bound, no competitor
-        assumes,  ///< takes it for granted that there are two, if any: no competitor either
-        method,   ///< knows the measurement alone
-        ours,     ///< a published operating point of the subset method
+        known_count,  ///< knows the number of faults: a bound, no competitor
+        assumes,      ///< takes it for granted that there are two, if any: no competitor either
+        method,       ///< knows the measurement alone
+        ours,         ///< a published operating point of the subset method
     };
 
     std::string name;

@@ -24,7 +24,7 @@ constexpr double readmitted_at_s = 45;
 struct Rule {
     const char* name;
     double error;      ///< error of every entry of A and B of the plant, uniform within +-
-    double allowed;       ///< what the observers allow for
+    double allowed;    ///< what the observers allow for
     double threshold;  ///< 0: from noise and model error
 };
 

@@ -69,9 +69,9 @@ private:
         bool opened_once = false;
     };
 
-    AxisMask reported(const LaneReport& voice, std::int64_t now_ns) const;
-    void open(LaneReport& voice, Identity identity, AxisMask axes, std::int64_t now_ns);
-    bool fresh(const LaneReport& voice, std::int64_t now_ns) const { return voice.received && now_ns - voice.received_ns <= silence_ns_; }
+    AxisMask reported(const LaneReport& last, std::int64_t now_ns) const;
+    void open(LaneReport& last, Identity identity, AxisMask axes, std::int64_t now_ns);
+    bool fresh(const LaneReport& last, std::int64_t now_ns) const { return last.received && now_ns - last.received_ns <= silence_ns_; }
 
     std::array<LaneReport, max_lanes> lane_reports_{};
     std::size_t lanes_;
