@@ -58,6 +58,7 @@ std::optional<Identity> Frames::newest() const
 void Frames::receive(LaneIndex lane, const AttitudeState& attitude, std::int64_t now_ns)
 {
     const Identity identity = identity_of(attitude);
+    if (first_received_ && identity.epoch == first_received_->epoch) first_received_ = std::min(*first_received_, identity);
     const Timeline::Arrival arrival = timeline_.classify(identity, now_ns);
     if (arrival == Timeline::Arrival::old) {
         ++counters_.late;
@@ -87,6 +88,7 @@ void Frames::start(Identity first, std::optional<Identity> published, std::int64
 {
     if (timeline_.epoch() != first.epoch) narrator_.epoch(first, timeline_.epoch());
     timeline_.start(first, now_ns);
+    first_received_ = newcomers_.begin(first);
     if (published) timeline_.pass(*published);
     for (LaneIndex lane = 0; lane < board_.size(); ++lane) {
         if (const auto held = newcomers_.take(lane, first)) receive(lane, *held, now_ns);

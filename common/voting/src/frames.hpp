@@ -73,6 +73,9 @@ public:
     std::optional<LaneIndex> lane_of(std::uint32_t lane_id) const;
     Identity identity(std::uint64_t sequence) const { return timeline_.identity(sequence); }
     std::optional<Identity> newest() const;
+
+    /// The first frame of the present timeline that any lane delivered, even where it came later than others.
+    std::optional<Identity> first_received() const { return first_received_; }
     std::uint64_t epoch() const { return timeline_.epoch(); }
 
     /// Calls `consider` with the times at which something changes here by itself.
@@ -96,6 +99,7 @@ private:
     const VoterSettings& settings_;  ///< Ids of the unit, its lanes and detectors.
     Durations durations_;            ///< Patience and silence are used.
     std::size_t majority_;           ///< So many of the configured lanes are a majority.
+    std::optional<Identity> first_received_;  ///< Of the timeline; frames may have come before it was believed.
     Timeline timeline_;              ///< Which frames exist, which are passed, and when each is due.
     Newcomers newcomers_;            ///< Samples that the timeline did not expect.
     Corroboration corroboration_;    ///< What the detectors report.

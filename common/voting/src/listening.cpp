@@ -28,21 +28,18 @@ Listening::Delay Listening::delay(std::int64_t away_ns, std::int64_t mute_ns, st
     return absent ? Delay::absence : Delay::pause;
 }
 
-Listening::Progress Listening::progress(const std::optional<Identity>& newest, const OtherVoters& others, std::int64_t now_ns)
+Listening::Progress Listening::progress(const std::optional<Identity>& first, const OtherVoters& others, std::int64_t now_ns)
 {
     if (now_ns < until_ns_) return Progress::listening;
-    const Progress found = begun_ || !others.exist() ? Progress::returned : orientation(newest, others, now_ns);
+    const Progress found = begun_ || !others.exist() ? Progress::returned : orientation(first, others, now_ns);
     begun_ = found != Progress::listening;
     return found;
 }
 
-Listening::Progress Listening::orientation(const std::optional<Identity>& newest, const OtherVoters& others, std::int64_t now_ns)
+Listening::Progress Listening::orientation(const std::optional<Identity>& first, const OtherVoters& others, std::int64_t now_ns)
 {
-    if (!frames_since_ns_ && newest) {
-        frames_since_ns_ = now_ns;
-        from_the_beginning_ = newest->sequence < first_frames;
-    }
-    if (from_the_beginning_) return Progress::begun;
+    if (!frames_since_ns_ && first) frames_since_ns_ = now_ns;
+    if (first && first->sequence < first_frames) return Progress::begun;
     if (others.seen()) {
         if (!others_since_ns_) others_since_ns_ = now_ns;
         const bool history_read = now_ns >= *others_since_ns_ + durations_.lease_ns;  // a late joiner is sent the other's history first

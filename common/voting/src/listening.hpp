@@ -44,8 +44,8 @@ public:
     /// Whatever waited in the queues at the last delay has been handed in by then.
     std::int64_t queues_read_ns() const { return queues_read_ns_; }
 
-    /// To be asked while listening. @param newest  newest frame received; none before the first one.
-    Progress progress(const std::optional<Identity>& newest, const OtherVoters& others, std::int64_t now_ns);
+    /// To be asked while listening. @param first  first frame received of the present timeline
+    Progress progress(const std::optional<Identity>& first, const OtherVoters& others, std::int64_t now_ns);
 
     /// Frames that came before that have been published by whoever runs.
     std::int64_t unanswered_ns() const { return durations_.lease_ns / 2; }
@@ -64,13 +64,12 @@ public:
     }
 
 private:
-    Progress orientation(const std::optional<Identity>& newest, const OtherVoters& others, std::int64_t now_ns);
+    Progress orientation(const std::optional<Identity>& first, const OtherVoters& others, std::int64_t now_ns);
 
     Durations durations_;                          ///< Interval, lease and listen_s are used.
     std::int64_t until_ns_ = 0;                    ///< Listening lasts until then at least.
     std::int64_t queues_read_ns_ = 0;              ///< Half an interval after the last delay.
     bool begun_ = false;                           ///< Listening has ended once, so that only a delay can be its cause.
-    bool from_the_beginning_ = false;              ///< The first frame received was among the first of its epoch.
     std::optional<std::int64_t> frames_since_ns_;  ///< When the first frame was there.
     std::optional<std::int64_t> others_since_ns_;  ///< When another voter's output was there first.
 };

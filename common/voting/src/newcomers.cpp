@@ -10,7 +10,10 @@ namespace quorient::voting {
 void Newcomers::hold(std::size_t lane, const AttitudeState& sample, std::int64_t now_ns)
 {
     Held& held = held_[lane];
-    if (!held.present || !same_timeline(identity_of(held.sample), identity_of(sample))) held.since_ns = now_ns;
+    if (!held.present || !same_timeline(identity_of(held.sample), identity_of(sample))) {
+        held.since_ns = now_ns;
+        held.first = identity_of(sample);
+    }
     held.sample = sample;
     held.present = true;
 }
@@ -41,6 +44,16 @@ std::optional<Identity> Newcomers::accepted(std::int64_t now_ns) const
         start = first;
     }
     return start;
+}
+
+Identity Newcomers::begin(Identity start) const
+{
+    Identity begin = start;
+    for (std::size_t lane = 0; lane < lanes_; ++lane) {
+        const Held& held = held_[lane];
+        if (held.present && same_timeline(identity_of(held.sample), start)) begin = std::min(begin, held.first);
+    }
+    return begin;
 }
 
 std::optional<AttitudeState> Newcomers::take(std::size_t lane, Identity start)

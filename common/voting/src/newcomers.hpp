@@ -25,6 +25,9 @@ public:
     /// The frame at which a new timeline starts.
     std::optional<Identity> accepted(std::int64_t now_ns) const;
 
+    /// The first frame that a lane of this timeline delivered. It was not kept where later ones came before the timeline was accepted.
+    Identity begin(Identity start) const;
+
     /// The lane's held sample, taken out; nothing where it is of another timeline than `start`.
     std::optional<AttitudeState> take(std::size_t lane, Identity start);
 
@@ -34,6 +37,7 @@ public:
 private:
     struct Held {
         AttitudeState sample;
+        Identity first;  ///< Of the samples of this timeline.
         std::int64_t since_ns = 0;
         bool present = false;
     };

@@ -151,7 +151,7 @@ void Voter::go_on(bool publishes)
 
 void Voter::end_listening()
 {
-    const Listening::Progress progress = listening_->progress(frames_->newest(), *others_, *now_ns_);
+    const Listening::Progress progress = listening_->progress(frames_->first_received(), *others_, *now_ns_);
     if (progress == Listening::Progress::listening) return;
     state_ = VoterState::waiting;
     const Identity newest = frames_->newest().value_or(Identity{});

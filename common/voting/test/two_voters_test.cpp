@@ -293,6 +293,33 @@ TEST(TwoVoters, let_one_that_was_there_from_the_beginning_start_at_once)
     EXPECT_EQ(scene.outputs.front().output_sequence, 1U);
 }
 
+TEST(TwoVoters, let_one_that_was_there_from_the_beginning_with_a_single_lane_start_when_that_one_is_believed)
+{
+    Scene scene(settings_of(3, {1, 2}, 1), -100 * ms);
+    scene.frames(5, 60, [](std::size_t lane, AttitudeState& sample) {
+        if (lane > 0) sample.mode = octet(AttitudeMode::initialising);
+        return lane == 0 || sample.sequence >= 39;
+    });
+    ASSERT_FALSE(scene.outputs.empty());
+    EXPECT_LE(scene.outputs.front().sequence, 30U) << "a lane alone is believed after 20 frames";
+}
+
+TEST(TwoVoters, let_one_start_at_once_when_a_lane_hands_in_the_beginning_later)
+{
+    Scene scene(settings_of(3, {1, 2}, 1), -100 * ms);
+    scene.frames(25, 49, [](std::size_t lane, AttitudeState& sample) {
+        sample.mode = octet(AttitudeMode::initialising);
+        return lane == 1;
+    });
+    ASSERT_TRUE(scene.outputs.empty());
+    for (std::uint64_t sequence = 0; sequence < 50; ++sequence) {
+        for (const std::size_t lane : {0, 2}) scene.at(Scene::time_of(49) + ms, sample_of(lane, sequence));
+    }
+    scene.frames(50, 60);
+    ASSERT_FALSE(scene.outputs.empty());
+    EXPECT_LE(scene.outputs.front().sequence, 50U);
+}
+
 TEST(TwoVoters, never_let_a_stopped_one_take_the_output_back_in_time)
 {
     Pair pair;
