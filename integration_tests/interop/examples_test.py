@@ -32,6 +32,17 @@ def samples(log):
     return [Voted(line) for line in log.read_text().split("\n")[:-1] if not LOGGED.match(line)]
 
 
+def spans(stream):
+    """The frames given, each run of them from its first to its last, to say which are missing."""
+    runs = []
+    for sample in stream:
+        if runs and sample.sequence == runs[-1][1] + 1:
+            runs[-1][1] = sample.sequence
+        else:
+            runs.append([sample.sequence, sample.sequence])
+    return ", ".join(f"{first} to {last}" for first, last in runs)
+
+
 def trace_page(traces):
     page = ["# Take-over, seen by foreign subscribers\n"]
     page.append("Made by `QUORIENT_TAKE_OVER_TRACE=integration_tests/results/take_over.md python3 -m integration_tests.interop.examples_test "
@@ -95,10 +106,11 @@ class Examples(InteropTest):
             self.eventually(lambda: len(samples(log)) > 0 and samples(log)[-1].sequence == len(truth) - 1, f"the last frame in {log}")
         verdicts = self.echo("verdict", 3)
         self.stop(consumers)
+        self.said = "".join(re.sub(r"(?m)^", f"{name}: ", log.read_text(errors="replace")) for name, (_, log) in services.items())
         return truth, {name: samples(log) for name, (_, log) in consumers.items()}, verdicts
 
     def assert_stream_is_true(self, truth, stream, from_sequence=0):
-        self.assertGreater(len(stream), 0.9 * len(truth))
+        self.assertGreater(len(stream), 0.9 * len(truth), f"frames given: {spans(stream)}\n{self.said}")
         # The frames do not wait for the consumers. A consumer may match the weaker voter first, and the stronger one only when frames already
         # flow. The stronger one then resends its history to this reader, while the weaker one's last frames still arrive.
         found = 1 + max((place for place, sample in enumerate(stream) if sample.voter != 1), default=-1)

@@ -40,10 +40,20 @@ static dds_entity_t writer_of(dds_entity_t participant, const dds_topic_descript
     return writer;
 }
 
-static void wait_for_readers(dds_entity_t writer, uint32_t readers)
+static void wait_for_matches(dds_entity_t writer, uint32_t readers)
 {
     dds_publication_matched_status_t matched = {0};
     while (dds_get_publication_matched_status(writer, &matched) == 0 && matched.current_count < readers) dds_sleepfor(DDS_MSECS(5));
+}
+
+/* A match here says that we know the reader, not that the reader knows us: frames that go out at once would miss it. Whoever has acknowledged
+   a description written after the match knows both writers, since the one of frames was announced before. */
+static void describe_to_readers(dds_entity_t descriptions, const quorient_msgs_ClusterDescription* description, dds_entity_t frames, uint32_t readers)
+{
+    wait_for_matches(frames, readers);
+    wait_for_matches(descriptions, readers);
+    made(dds_write(descriptions, description), "description");
+    made(dds_wait_for_acks(descriptions, DDS_SECS(10)), "acknowledgement of the description within 10 s");
 }
 
 int main(int argc, char** argv)
@@ -83,8 +93,8 @@ int main(int argc, char** argv)
                            "</Domain></CycloneDDS>"),
          "domain");
     const dds_entity_t participant = made(dds_create_participant(domain, NULL, NULL), "participant");
-    const dds_entity_t descriptions = writer_of(participant, &quorient_msgs_ClusterDescription_desc, "quorient/cluster", 1);
     const dds_entity_t frames = writer_of(participant, &quorient_msgs_SensorFrame_desc, "quorient/frame", 0);
+    const dds_entity_t descriptions = writer_of(participant, &quorient_msgs_ClusterDescription_desc, "quorient/cluster", 1);
 
     dds_time_t due = 0;
     while (fgets(line, sizeof line, recording)) {
@@ -94,8 +104,7 @@ int main(int argc, char** argv)
         for (int axis = 0; axis < description.axis_count; ++axis) frame.accumulated[axis] += frame.increment[axis] = row[1 + axis];
         if (frame.sequence_number == 0) {
             description.interval_s = frame.interval_s;
-            made(dds_write(descriptions, &description), "description");
-            wait_for_readers(frames, argc > 4 ? (uint32_t)atoi(argv[4]) : 1);
+            describe_to_readers(descriptions, &description, frames, argc > 4 ? (uint32_t)atoi(argv[4]) : 1);
             due = dds_time();
         }
         due += llround(frame.interval_s * 1e9);

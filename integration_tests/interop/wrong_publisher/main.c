@@ -87,7 +87,6 @@ int main(int argc, char** argv)
                            "</Domain></CycloneDDS>"),
          "domain");
     const dds_entity_t participant = made(dds_create_participant(domain, NULL, NULL), "participant");
-    const dds_entity_t descriptions = writer_of(participant, &quorient_msgs_ClusterDescription_desc, "quorient/cluster", 1, 1);
     if (MISTAKE("type") || MISTAKE("qos")) {
         const int other_type = MISTAKE("type");
         writer_of(participant, other_type ? &quorient_msgs_ServiceStatus_desc : &quorient_msgs_SensorFrame_desc, "quorient/frame", 0, other_type);
@@ -95,6 +94,7 @@ int main(int argc, char** argv)
         return 0;
     }
     const dds_entity_t frames = writer_of(participant, &quorient_msgs_SensorFrame_desc, "quorient/frame", 0, 1);
+    const dds_entity_t descriptions = writer_of(participant, &quorient_msgs_ClusterDescription_desc, "quorient/cluster", 1, 1);
 
     struct timespec now;
     clock_gettime(CLOCK_REALTIME, &now);
@@ -107,8 +107,6 @@ int main(int argc, char** argv)
     if (MISTAKE("instrument-255")) description.instrument[3] = 255;
     if (MISTAKE("interval-nan")) description.interval_s = nan("");
     if (MISTAKE("sigma-negative")) description.sigma[1] = -1;
-    if (!MISTAKE("no-description")) made(dds_write(descriptions, &description), "description");
-
     quorient_msgs_SensorFrame frame;
     memset(&frame, 0, sizeof frame);
     frame.epoch = epoch;
@@ -118,6 +116,10 @@ int main(int argc, char** argv)
     frame.valid_mask = (1u << AXES) - 1;
     dds_publication_matched_status_t matched = {0};
     while (!stop && dds_get_publication_matched_status(frames, &matched) == 0 && matched.current_count < 6) dds_sleepfor(DDS_MSECS(5));
+    while (!stop && dds_get_publication_matched_status(descriptions, &matched) == 0 && matched.current_count < 6) dds_sleepfor(DDS_MSECS(5));
+    /* Whoever has acknowledged a description written after the match knows the writer of frames too, which was announced before. */
+    if (!MISTAKE("no-description")) made(dds_write(descriptions, &description), "description");
+    if (!stop) made(dds_wait_for_acks(descriptions, DDS_SECS(10)), "acknowledgement of the description within 10 s");
     dds_time_t due = dds_time();
     for (uint64_t count = 0; !stop; ++count, due += INTERVAL_NS) {
         frame.interval_s = INTERVAL_NS * 1e-9;
