@@ -1,10 +1,9 @@
 """A running system with a monitor, for tests of what the monitor serves."""
 import http.client
 import json
-import pathlib
 import socket
 
-from integration_tests.harness.processes import CONFIGURATIONS, ProcessTest
+from integration_tests.harness.processes import CONFIGURATIONS, ProcessTest, children_of, words_of
 
 
 def free_port():
@@ -59,15 +58,8 @@ class MonitoredSystem(ProcessTest):
         self.assertEqual(injected.returncode, 0, injected.stdout + injected.stderr)
 
     def children(self):
-        task = pathlib.Path(f"/proc/{self.pipeline.pid}/task/{self.pipeline.pid}/children")
-        return [int(pid) for pid in task.read_text().split()]
+        return children_of(self.pipeline.pid)
 
     def monitor(self):
         """Its process; None while there is none."""
-        return next((pid for pid in self.children() if "quorient-monitor" in self.command_line(pid)), None)
-
-    def command_line(self, pid):
-        try:
-            return pathlib.Path(f"/proc/{pid}/cmdline").read_text()
-        except OSError:
-            return ""
+        return next((pid for pid in self.children() if any("quorient-monitor" in word for word in words_of(pid))), None)

@@ -12,7 +12,7 @@ import tempfile
 import time
 
 from integration_tests.harness import exact_json
-from integration_tests.harness.processes import BIN, CONFIGURATIONS
+from integration_tests.harness.processes import BIN, CONFIGURATIONS, children_of, words_of
 from integration_tests.harness.streams import Recording, parse_truth, parse_voted
 
 RATE_HZ = 200
@@ -140,27 +140,18 @@ class Pipeline:
         for again in reversed(self.started_again):
             if again.poll() is None and again.args[again.args.index("--name") + 1] == name:
                 return again.pid
-        children = pathlib.Path(f"/proc/{self.launch.pid}/task/{self.launch.pid}/children").read_text().split()
-        for child in children:
+        for child in children_of(self.launch.pid):
             if name in (self._name_of(child), *self._members_of(child)):
-                return int(child)
+                return child
         return None
 
     def names(self):
-        children = pathlib.Path(f"/proc/{self.launch.pid}/task/{self.launch.pid}/children").read_text().split()
-        return [name for name in map(self._name_of, children) if name]
-
-    @staticmethod
-    def _words_of(process):
-        try:
-            return pathlib.Path(f"/proc/{process}/cmdline").read_text().split("\0")[:-1]
-        except (FileNotFoundError, ProcessLookupError):
-            return []
+        return [name for name in map(self._name_of, children_of(self.launch.pid)) if name]
 
     @classmethod
     def _members_of(cls, process):
         """Names of the system file's processes that run in this one."""
-        words = cls._words_of(process)
+        words = words_of(process)
         if words and words[0].endswith("/quorient-run"):
             return list(itertools.takewhile(lambda word: not word.startswith("--"), words[2:]))
         return [words[words.index("--name") + 1]] if "--name" in words and "quorient-" in words[0] else []
@@ -200,7 +191,7 @@ class Pipeline:
     def terminate(self, name):
         """SIGTERM, and waits for the goodbye. @returns how to start it again."""
         process = self.process_of(name)
-        words = self._words_of(process)
+        words = words_of(process)
         self._signal(process, signal.SIGTERM)
         self.until(lambda: self.is_gone(process), f"{name} ends in order", 5)
         return words

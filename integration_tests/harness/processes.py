@@ -18,6 +18,22 @@ DATA = pathlib.Path(os.environ.get("QUORIENT_DATA_DIR", SHARED / "data"))
 CONFIGURATIONS = ROOT / "deploy/configurations"
 
 
+def children_of(process):
+    """Process ids of a process id's children; nothing where it has ended."""
+    try:
+        return list(map(int, pathlib.Path(f"/proc/{process}/task/{process}/children").read_text().split()))
+    except (FileNotFoundError, ProcessLookupError):
+        return []
+
+
+def words_of(process):
+    """The command line of a process id; nothing where it has ended."""
+    try:
+        return pathlib.Path(f"/proc/{process}/cmdline").read_text().split("\0")[:-1]
+    except (FileNotFoundError, ProcessLookupError):
+        return []
+
+
 class Attempt(unittest.TestResult):
     """What one attempt reported, to be reported again to the result that counts."""
 

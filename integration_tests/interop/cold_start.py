@@ -2,6 +2,7 @@
 
     python3 -m integration_tests.interop.cold_start --starts 100                # a table for each order of starting
     python3 -m integration_tests.interop.cold_start --starts 10 --only earlier
+    python3 -m integration_tests.interop.cold_start --starts 50 --kill          # the stronger voter dies within the first half second
 
 A reader is an example of idl/examples: the vendor's API, none of our code."""
 import argparse
@@ -11,12 +12,14 @@ from typing import NamedTuple
 
 from integration_tests.harness.foreign import BIN, InteropTest, consumer
 from integration_tests.harness.pipeline import ask_for_priority, at_least_once
-from integration_tests.harness.processes import CONFIGURATIONS
+from integration_tests.harness.processes import CONFIGURATIONS, children_of, words_of
 from integration_tests.interop.examples_test import samples
 
 DURATION_S = 5  # the vendors have found each other within 2 s
 READERS = ("consumer_cyclonedds", "consumer_fastdds")
 ORDERS = ("together", "earlier", "later")
+KILLED_WITHIN_S = 0.5  # of the first voted frame
+TAKE_OVER_FRAMES = 14  # one lease of 50 ms + 20 ms, at 200 Hz
 
 
 class Given(NamedTuple):
@@ -26,6 +29,7 @@ class Given(NamedTuple):
     repeated: int  # or older than one before
     missing: int  # between the first sample and the last
     voters: int  # whose samples it was given
+    first_voter: int  # 0: it was given nothing
 
     @property
     def whole(self):
@@ -42,7 +46,7 @@ def judged(stream):
         if newest is not None and sample.epoch == newest.epoch:
             missing += max(0, sample.sequence - newest.sequence - 1)
         newest = sample
-    return Given(len(stream), repeated, missing, len({sample.voter for sample in stream}))
+    return Given(len(stream), repeated, missing, len({sample.voter for sample in stream}), stream[0].voter if stream else 0)
 
 
 class Start(InteropTest):
@@ -51,32 +55,40 @@ class Start(InteropTest):
     def runTest(self):
         pass
 
-    def given(self, order):
-        """@returns {reader: Given}"""
+    def given(self, order, kill_after_s=None):
+        """@param kill_after_s  so long after the first voted frame the stronger voter is killed  @returns {reader: Given}"""
         if order == "earlier":
             readers = self.start_readers()
             time.sleep(1)  # no synchronisation: it is what is tried
         launch, said = self.start_logged("launch", BIN / "quorient", "launch", CONFIGURATIONS / "demo.yaml", "--domain", self.domain, "--json",
                                          "--set", f"source.duration_s={DURATION_S}", "--set", "source.faults=[]", "--set", "expect=null")
         if order == "later":
-            self.eventually(lambda: self.heartbeat("voter-1").exists() and self.heartbeat("voter-1").read_text().split()[1:2] > ["0"], "frames are voted")
+            self.eventually(self.frames_are_voted, "frames are voted")
         if order != "earlier":
             readers = self.start_readers()
-        self.assertEqual(launch.wait(60), 0, said.read_text())
+        if kill_after_s is not None:
+            self.eventually(self.frames_are_voted, "frames are voted")
+            time.sleep(kill_after_s)  # no synchronisation: it is what is tried
+            self.kill(next(child for child in children_of(launch.pid) if "voter-1" in words_of(child)))
+        self.assertIn(launch.wait(60), (0,) if kill_after_s is None else (0, 1), said.read_text())
         for process, _ in readers.values():
             process.terminate()
             process.wait(10)
         return {name: judged(samples(log)) for name, (_, log) in readers.items()}
 
+    def frames_are_voted(self):
+        beat = self.heartbeat("voter-1")
+        return beat.exists() and beat.read_text().split()[1:2] > ["0"]
+
     def start_readers(self):
         return {name: self.start_logged(name, *consumer(name), self.domain) for name in READERS}
 
 
-def start(order):
+def start(order, kill_after_s=None):
     one = Start()
     one.setUp()
     try:
-        return one.given(order)
+        return one.given(order, kill_after_s)
     finally:
         one.tearDown()
 
@@ -89,24 +101,47 @@ def report(order, outcomes):
                f"| {sum(one.voters > 1 for one in given)} |")
 
 
+KILLED_HEADER = """| reader | at most one lease + 20 ms missed | most frames missed | heard the weaker voter first |
+|---|---|---|---|"""
+
+
+def kill_many(starts):
+    """The stronger voter is killed at times spread evenly over the first half second. @returns whether all readers had the other in time"""
+    outcomes = [start("together", KILLED_WITHIN_S * (number + 0.5) / starts) for number in range(starts)]
+    print(KILLED_HEADER)
+    for name in READERS:
+        given = [outcome[name] for outcome in outcomes]
+        in_time = sum(one.missing <= TAKE_OVER_FRAMES for one in given)
+        print(f"| {name} | {in_time} of {starts} | {max(one.missing for one in given)} | {sum(one.first_voter != 1 for one in given)} |")
+    return all(one.missing <= TAKE_OVER_FRAMES for outcome in outcomes for one in outcome.values())
+
+
 HEADER = """| readers start | reader | every frame once, in order | starts with repeated frames | most of them | starts with missing frames | most of them | starts with both voters |
 |---|---|---|---|---|---|---|---|"""
+
+
+def start_many(starts, orders):
+    """@returns whether all readers were given every frame once"""
+    print(HEADER, flush=True)
+    whole = True
+    for order in orders:
+        outcomes = [start(order) for _ in range(starts)]
+        whole = whole and all(one.whole for outcome in outcomes for one in outcome.values())
+        print("\n".join(report(order, outcomes)), flush=True)
+    return whole
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--starts", type=at_least_once, default=20)
-    parser.add_argument("--only", choices=ORDERS, help="one order of starting")
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--only", choices=ORDERS, help="one order of starting")
+    what.add_argument("--kill", action="store_true", help="kill the stronger voter within the first half second")
     options = parser.parse_args()
     for name in READERS:
         consumer(name)
     ask_for_priority()
-    print(HEADER, flush=True)
-    whole = True
-    for order in (options.only,) if options.only else ORDERS:
-        outcomes = [start(order) for _ in range(options.starts)]
-        whole = whole and all(one.whole for outcome in outcomes for one in outcome.values())
-        print("\n".join(report(order, outcomes)), flush=True)
+    whole = kill_many(options.starts) if options.kill else start_many(options.starts, (options.only,) if options.only else ORDERS)
     print(f"\nMade by `python3 -m integration_tests.interop.cold_start {' '.join(sys.argv[1:])}`.")
     return 0 if whole else 1
 

@@ -7,6 +7,7 @@ import unittest
 
 from integration_tests.harness import browser
 from integration_tests.harness.monitored import MonitoredSystem
+from integration_tests.harness.processes import words_of
 
 PICTURES = pathlib.Path(os.environ["QUORIENT_PICTURES"]) if "QUORIENT_PICTURES" in os.environ else None
 LIGHTEST_CONTRAST = 4.5
@@ -72,7 +73,7 @@ class Page(MonitoredSystem):
         self.eventually(lambda: self.tiles(page)["G2"] == "isolated", "G2's tile turns to isolated", timeout=2)
         self.assertEqual(self.tiles(page), {"G1": "healthy", "G2": "isolated", "G3": "healthy", "G4": "healthy"})
         self.eventually(lambda: page.evaluate("!!document.querySelector('#events [data-code=ISOLATED]')"), "the event is listed", timeout=2)
-        victim = next(pid for pid in self.children() if "attitude-a" in self.command_line(pid))
+        victim = next(pid for pid in self.children() if "attitude-a" in words_of(pid))
         subprocess.run(["kill", "-STOP", str(victim)], check=True)
         standing = "document.querySelector('#lanes tbody tr').cells[1].textContent"
         self.eventually(lambda: page.evaluate(standing) == "silent", "lane a is shown as silent", timeout=5)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from integration_tests.harness.debian import own_release
 from integration_tests.harness.judge import FINAL_ERROR_RAD, errors_beyond, first_judged, judge, missing_frames
 from integration_tests.harness.pipeline import ALL_LANES, END_OF_GRACE_FRAMES, RATE_HZ, NotInTime, Pipeline, ask_for_priority
-from integration_tests.harness.processes import BIN, CONFIGURATIONS, ROOT
+from integration_tests.harness.processes import BIN, CONFIGURATIONS, ROOT, children_of, words_of
 from integration_tests.harness.quaternion import angle, conjugate, product
 from integration_tests.harness.steady import Steady
 from integration_tests.harness.streams import HELD, SINGLE
@@ -90,11 +90,7 @@ class MixedPipeline(Pipeline):
     @classmethod
     def _with_descendants(cls, process):
         yield process
-        try:
-            children = pathlib.Path(f"/proc/{process}/task/{process}/children").read_text().split()
-        except (FileNotFoundError, ProcessLookupError):
-            return
-        for child in map(int, children):
+        for child in children_of(process):
             yield from cls._with_descendants(child)
 
     def release_of(self, name):
@@ -161,7 +157,7 @@ class MixedPipeline(Pipeline):
     def kill_and_start_again(self, name):
         """A process on the other release, of which `quorient launch` knows nothing."""
         process = self.process_of(name)
-        words = self._words_of(process)
+        words = words_of(process)
         self.kill(name)
         self.until(lambda: self.is_gone(process), f"{name} is gone", 5)
         self.start_on(self.other, words)
