@@ -99,7 +99,7 @@ private:
     const VoterSettings& settings_;  ///< Ids of the unit, its lanes and detectors.
     Durations durations_;            ///< Patience and silence are used.
     std::size_t majority_;           ///< So many of the configured lanes are a majority.
-    std::optional<Identity> first_received_;  ///< Of the timeline; frames may have come before it was believed.
+    std::optional<Identity> first_received_;  ///< The first frame of the timeline; frames may have come before it was believed.
     Timeline timeline_;              ///< Which frames exist, which are passed, and when each is due.
     Newcomers newcomers_;            ///< Samples that the timeline did not expect.
     Corroboration corroboration_;    ///< What the detectors report.

@@ -37,7 +37,7 @@ public:
 private:
     struct Held {
         AttitudeState sample;
-        Identity first;  ///< Of the samples of this timeline.
+        Identity first;  ///< The earliest sample of this timeline.
         std::int64_t since_ns = 0;
         bool present = false;
     };
