@@ -23,7 +23,7 @@ using Names = std::vector<std::string>;
 /// The sensor comes last. It is ready when it is made, so the others must exist by then: the process is ready once all are.
 constexpr std::array roles{ServiceRole::detector, ServiceRole::integrator, ServiceRole::voter, ServiceRole::sensor};
 
-tl::expected<host::Process, std::string> find_process(const system::System& system, ServiceRole role, const std::string& name)
+tl::expected<host::Process, std::string> find_process(const system::System& system, ServiceRole role, const std::string& name, const Names& names)
 {
     switch (role) {
         case ServiceRole::sensor:
@@ -31,7 +31,7 @@ tl::expected<host::Process, std::string> find_process(const system::System& syst
         case ServiceRole::detector:
             return detector::find_process(system, name);
         case ServiceRole::integrator:
-            return integrator::find_process(system, name);
+            return integrator::find_composed(system, name, names);
         default:
             return voter::find_process(system, name);
     }
@@ -54,7 +54,7 @@ tl::expected<std::vector<host::Process>, std::string> find_processes(const syste
     for (const auto role : roles) {
         for (const auto& name : names) {
             if (system.process(name)->node.role != role) continue;
-            auto process = find_process(system, role, name);
+            auto process = find_process(system, role, name, names);
             if (!process) return tl::unexpected(process.error());
             processes.push_back(std::move(*process));
         }

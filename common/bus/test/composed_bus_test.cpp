@@ -137,6 +137,29 @@ TEST_P(ComposedBus, gives_every_subscriber_every_sample_once_inside_and_outside)
     }
 }
 
+TEST_P(ComposedBus, gives_a_subscriber_of_this_process_nothing_from_outside)
+{
+    auto publisher = composed->advertise(topics::verdict);
+    auto far_publisher = other->advertise(topics::verdict);
+    auto inner = composed->subscribe(topics::verdict, Reach::process);
+    auto anywhere = composed->subscribe(topics::verdict);
+    ASSERT_TRUE(eventually([&] { return anywhere.status().matched == 2 && far_publisher.status().matched == 1; }));
+    EXPECT_EQ(inner.status().matched, 1U);
+
+    Received in_inner(inner), in_anywhere(anywhere);
+    for (std::uint64_t sequence = 1; sequence <= samples; ++sequence) {
+        ASSERT_TRUE(far_publisher.publish(verdict_of(outside, sequence)));
+        ASSERT_TRUE(publisher.publish(verdict_of(inside, sequence)));
+    }
+    ASSERT_TRUE(eventually([&] {
+        in_inner.take_all();
+        in_anywhere.take_all();
+        return in_anywhere.has_last_of(outside);
+    }));
+    EXPECT_EQ(in_inner.of(inside), each_once());
+    EXPECT_TRUE(in_inner.of(outside).empty());
+}
+
 TEST_P(ComposedBus, gives_a_late_subscriber_the_history_once)
 {
     auto publisher = composed->advertise(topics::verdict);

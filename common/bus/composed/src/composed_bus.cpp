@@ -40,6 +40,14 @@ struct Feed {
     std::uint64_t looks = 0;  ///< how often a reader has looked for samples from outside
 };
 
+/// For a reader that wants nothing from outside.
+class NothingOutside final : public Reader {
+public:
+    bool take(void*) override { return false; }
+    EndpointStatus status() override { return {}; }
+    Sender sender() override { return {}; }
+};
+
 class ComposedReader final : public Reader {
 public:
     ComposedReader(std::shared_ptr<State> state, std::shared_ptr<Feed> feed, const TopicSpec& topic);
@@ -185,6 +193,14 @@ private:
     {
         if (!is_handed_over(topic)) return outside_->make_reader(topic);
         return std::make_unique<ComposedReader>(state_, feed_for(topic), topic);
+    }
+
+    std::unique_ptr<Reader> make_inner_reader(const TopicSpec& topic) override
+    {
+        if (!is_handed_over(topic)) return outside_->make_reader(topic);
+        auto feed = std::make_shared<Feed>();
+        feed->reader = std::make_unique<NothingOutside>();
+        return std::make_unique<ComposedReader>(state_, std::move(feed), topic);
     }
 
     /// Orders are not shared: a service asks for the sender of the one that it has taken.

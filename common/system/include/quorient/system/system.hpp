@@ -1,6 +1,7 @@
 #pragma once
 
 #include "quorient/attitude/integrator_settings.hpp"
+#include "quorient/bus/reach.hpp"
 #include "quorient/bus/settings.hpp"
 #include "quorient/calibration/cluster_file.hpp"
 #include "quorient/configuration/key.hpp"
@@ -110,6 +111,7 @@ struct DetectorProcess {
 struct IntegratorProcess {
     ProcessSettings process;
     std::uint32_t detector = 0;  ///< whose verdicts count
+    bus::Reach verdicts_from = bus::Reach::anywhere;
     double patience = 0.2;       ///< fraction of an interval that a frame waits for its verdict
     SensorKind kind = SensorKind::gyro;
     attitude::IntegratorSettings integration;
