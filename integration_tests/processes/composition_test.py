@@ -4,7 +4,7 @@ import os
 import signal
 import unittest
 
-from integration_tests.harness.processes import CONFIGURATIONS, ProcessTest
+from integration_tests.harness.processes import CONFIGURATIONS, ProcessTest, children_of, words_of
 
 LANE = "compose=[[fdi-a, attitude-a]]"
 # One vendor, so that everything can share a process.
@@ -69,6 +69,26 @@ class Composition(ProcessTest):
         self.assertNotEqual(processes["fdi-a"], processes["fdi-b"])
         self.assertIsNone(launch.poll())
 
+    def test_takes_verdicts_of_its_own_detector_alone(self):
+        """A detector's status counts the readers of its verdicts: its own integrator is one of the first detector's alone."""
+        self.start("quorient", "launch", CONFIGURATIONS / "demo.yaml", "--domain", self.domain, *one_vendor("cyclonedds"),
+                   *settings(LANE, "source.duration_s=60", "source.faults=[]", "expect=null"))
+        self.eventually(lambda: self.frames_of("attitude-a") > 400, "the lane handles frames")
+        readers = self.readers_of_verdicts()
+        self.assertGreaterEqual(readers["fdi-b"], 4, "two integrators and two voters")
+        self.assertEqual(readers["fdi-a"], readers["fdi-b"] + 1)
+
+    def test_separate_processes_take_verdicts_of_everybody(self):
+        self.start("quorient", "launch", CONFIGURATIONS / "demo.yaml", "--domain", self.domain, *one_vendor("cyclonedds"),
+                   *settings("source.duration_s=60", "source.faults=[]", "expect=null"))
+        self.eventually(lambda: self.frames_of("attitude-a") > 400, "the lane handles frames")
+        readers = self.readers_of_verdicts()
+        self.assertEqual(readers["fdi-a"], readers["fdi-b"])
+
+    def readers_of_verdicts(self):
+        echo = self.run_program("quorient", "echo", "status", "--count", 40, "--json", "--timeout", 20, "--domain", self.domain, timeout=40)
+        return {status["name"]: status["matched"] for status in map(json.loads, echo.stdout.splitlines())}
+
     def frames_of(self, name):
         beat = self.heartbeat(name)
         words = beat.read_text().split() if beat.exists() else []
@@ -86,15 +106,7 @@ class Composition(ProcessTest):
 
     def process_of(self, name):
         """The process that runs a service of this test's launch."""
-        children = open(f"/proc/{self.processes[0].pid}/task/{self.processes[0].pid}/children").read().split()
-        for child in children:
-            try:
-                words = open(f"/proc/{child}/cmdline").read().split("\0")
-            except OSError:
-                continue
-            if name in words:
-                return int(child)
-        return None
+        return next((child for child in children_of(self.processes[0].pid) if name in words_of(child)), None)
 
     def test_refuses_what_cannot_share_a_process(self):
         for names, why in ((("fdi-a", "fdi-b"), "has another `dds`"), (("fdi-a", "nobody"), "no process 'nobody'"), (("fdi-a", "fdi-a"), "twice")):
