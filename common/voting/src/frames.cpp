@@ -58,7 +58,6 @@ std::optional<Identity> Frames::newest() const
 void Frames::receive(LaneIndex lane, const AttitudeState& attitude, std::int64_t now_ns)
 {
     const Identity identity = identity_of(attitude);
-    if (first_received_ && identity.epoch == first_received_->epoch) first_received_ = std::min(*first_received_, identity);
     const Timeline::Arrival arrival = timeline_.classify(identity, now_ns);
     if (arrival == Timeline::Arrival::old) {
         ++counters_.late;
@@ -69,6 +68,7 @@ void Frames::receive(LaneIndex lane, const AttitudeState& attitude, std::int64_t
         newcomers_.hold(lane, attitude, now_ns);
         return;
     }
+    first_received_ = std::min(first_received_.value_or(identity), identity);
     newcomers_.expected(lane, !board_.lane(lane).blocked(), now_ns);
     if (!board_.store(lane, attitude)) {
         ++counters_.duplicates;

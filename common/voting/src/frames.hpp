@@ -74,7 +74,7 @@ public:
     Identity identity(std::uint64_t sequence) const { return timeline_.identity(sequence); }
     std::optional<Identity> newest() const;
 
-    /// The first frame of the present timeline that any lane delivered, even where it came later than others.
+    /// The first frame of the present timeline that any lane delivered, even where it came later than others, yet within their window.
     std::optional<Identity> first_received() const { return first_received_; }
     std::uint64_t epoch() const { return timeline_.epoch(); }
 

@@ -44,7 +44,7 @@ public:
     /// Whatever waited in the queues at the last delay has been handed in by then.
     std::int64_t queues_read_ns() const { return queues_read_ns_; }
 
-    /// To be asked while listening. @param first  first frame received of the present timeline
+    /// To be asked while listening. @param first  first frame received of the present timeline; none before it
     Progress progress(const std::optional<Identity>& first, const OtherVoters& others, std::int64_t now_ns);
 
     /// Frames that came before that have been published by whoever runs.

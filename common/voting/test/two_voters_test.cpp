@@ -320,6 +320,16 @@ TEST(TwoVoters, let_one_start_at_once_when_a_lane_hands_in_the_beginning_later)
     EXPECT_LE(scene.outputs.front().sequence, 50U);
 }
 
+TEST(TwoVoters, do_not_take_the_low_number_of_a_lane_that_strays_for_the_beginning)
+{
+    Scene scene(settings_of(3, {1, 2}, 1), Scene::time_of(300) - 3 * ms);
+    scene.frames(300, 400, [](std::size_t lane, AttitudeState& sample) {
+        if (lane == 1) sample.sequence -= 297;
+        return true;
+    });
+    EXPECT_TRUE(scene.outputs.empty());
+}
+
 TEST(TwoVoters, never_let_a_stopped_one_take_the_output_back_in_time)
 {
     Pair pair;
