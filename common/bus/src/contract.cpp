@@ -28,9 +28,10 @@ std::optional<std::uint32_t> announced_contract(std::span<const std::uint8_t> us
     return contract;
 }
 
-bool is_of_our_contract(std::span<const std::uint8_t> user_data)
+std::optional<std::uint32_t> other_contract(std::span<const std::uint8_t> user_data)
 {
-    return announced_contract(user_data).value_or(wire_contract) == wire_contract;
+    const auto announced = announced_contract(user_data);
+    return announced == wire_contract ? std::nullopt : announced;
 }
 
 std::string contract_refusal(const std::string& name, std::uint32_t contract)

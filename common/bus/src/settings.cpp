@@ -56,6 +56,7 @@ tl::expected<Transport, std::string> transport_from(std::string_view word)
 std::vector<std::pair<std::string, Vendor>> vendor_words()
 {
     std::vector<std::pair<std::string, Vendor>> words;
+    words.reserve(vendors.size());
     for (const auto& [vendor, name] : vendors) words.emplace_back(name, vendor);
     return words;
 }
@@ -63,6 +64,7 @@ std::vector<std::pair<std::string, Vendor>> vendor_words()
 std::vector<std::pair<std::string, Transport>> transport_words()
 {
     std::vector<std::pair<std::string, Transport>> words;
+    words.reserve(transports.size());
     for (const auto& [transport, name] : transports)
         if (transport != Transport::in_process) words.emplace_back(name, transport);
     return words;
@@ -71,6 +73,7 @@ std::vector<std::pair<std::string, Transport>> transport_words()
 std::vector<std::pair<std::string, SharedMemory>> shared_memory_words()
 {
     std::vector<std::pair<std::string, SharedMemory>> words;
+    words.reserve(shared_memory_choices.size());
     for (const auto& [choice, name] : shared_memory_choices) words.emplace_back(name, choice);
     return words;
 }

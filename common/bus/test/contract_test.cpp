@@ -19,15 +19,15 @@ TEST(WireContract, of_a_node_that_announces_none_or_something_else_is_unknown_an
 {
     for (const auto* text : {"", "quorient", "quorient contract=", "quorient contract=-1", "quorient contract=2x", "enclave=/;"}) {
         EXPECT_FALSE(announced_contract(octets(text))) << text;
-        EXPECT_TRUE(is_of_our_contract(octets(text))) << text;
+        EXPECT_FALSE(other_contract(octets(text))) << text;
     }
 }
 
 TEST(WireContract, with_another_number_is_refused_in_both_directions)
 {
-    EXPECT_TRUE(is_of_our_contract(octets(contract_announcement())));
-    EXPECT_FALSE(is_of_our_contract(octets(contract_announcement(wire_contract + 1))));
-    EXPECT_FALSE(is_of_our_contract(octets(contract_announcement(wire_contract - 1))));
+    EXPECT_FALSE(other_contract(octets(contract_announcement())));
+    EXPECT_EQ(other_contract(octets(contract_announcement(wire_contract + 1))), wire_contract + 1);
+    EXPECT_EQ(other_contract(octets(contract_announcement(wire_contract - 1))), wire_contract - 1);
 }
 
 }  // namespace

@@ -14,9 +14,9 @@ bool ContractCheck::accepts(dds_instance_handle_t writer)
 bool ContractCheck::ask(dds_instance_handle_t writer)
 {
     const auto [name, user_data] = announcement_of_writer(reader_, writer);
-    if (is_of_our_contract(user_data)) return true;
-    refusals_.add(RefusalReason::other_contract, contract_refusal(name, *announced_contract(user_data)));
-    return false;
+    const auto other = other_contract(user_data);
+    if (other) refusals_.add(RefusalReason::other_contract, contract_refusal(name, *other));
+    return !other;
 }
 
 }  // namespace quorient::bus::cyclonedds

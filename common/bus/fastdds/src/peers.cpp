@@ -24,9 +24,8 @@ void Peers::on_participant(const SeenParticipant& participant)
     const auto guid = plain(participant.guid);
     if (secured_ && !participant.gone && participant.unsecured)
         refusals_.add(RefusalReason::security, fmt::format("refuses '{}': it has no certificate", participant.name));
-    const auto contract = announced_contract(participant.user_data);
-    const bool other = !participant.gone && contract.value_or(wire_contract) != wire_contract;
-    if (other) refusals_.add(RefusalReason::other_contract, contract_refusal(participant.name, *contract));
+    const auto other = participant.gone ? std::nullopt : other_contract(participant.user_data);
+    if (other) refusals_.add(RefusalReason::other_contract, contract_refusal(participant.name, *other));
     const std::lock_guard lock{mutex_};
     if (participant.gone) names_.erase(guid);
     else names_[guid] = participant.name;

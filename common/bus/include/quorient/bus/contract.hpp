@@ -16,8 +16,9 @@ std::string contract_announcement(std::uint32_t contract = wire_contract);
 /// @param user_data  of another participant. @returns the contract that it announces; nothing for a node that announces none.
 std::optional<std::uint32_t> announced_contract(std::span<const std::uint8_t> user_data);
 
-/// Whether samples of a participant with this USER_DATA are accepted: it announces this contract, or none.
-bool is_of_our_contract(std::span<const std::uint8_t> user_data);
+/// The contract of a participant whose samples are refused for it. @param user_data  of that participant.
+/// @returns nothing where its samples are accepted: it announces this contract, or none.
+std::optional<std::uint32_t> other_contract(std::span<const std::uint8_t> user_data);
 
 /// The message for an operator. @param name  as the participant announces it.
 std::string contract_refusal(const std::string& name, std::uint32_t contract);
