@@ -1,8 +1,8 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -18,8 +18,7 @@ public:
             const std::string text(value);
             data.insert(data.end(), text.begin(), text.end());
         } else {
-            const auto* const first = reinterpret_cast<const std::uint8_t*>(&value);
-            data.insert(data.end(), first, first + sizeof value);
+            for (const auto octet : std::bit_cast<std::array<std::uint8_t, sizeof value>>(value)) data.push_back(octet);
         }
         return *this;
     }
