@@ -186,10 +186,10 @@ private:
             return std::make_unique<MarkedWriter<Message>>(bus_.advertise(topic, options));
         });
     }
-    std::unique_ptr<bus::Reader> make_reader(const bus::TopicSpec& spec) override
+    std::unique_ptr<bus::Reader> make_reader(const bus::TopicSpec& spec, const bus::ReaderOptions& options) override
     {
         return with_type_of<bus::Reader>(spec, [&]<class Message>(const bus::Topic<Message>& topic) -> std::unique_ptr<bus::Reader> {
-            return std::make_unique<MarkedReader<Message>>(bus_.subscribe(topic));
+            return std::make_unique<MarkedReader<Message>>(bus_.subscribe(topic, options));
         });
     }
 

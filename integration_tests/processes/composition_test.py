@@ -69,23 +69,26 @@ class Composition(ProcessTest):
         self.assertNotEqual(processes["fdi-a"], processes["fdi-b"])
         self.assertIsNone(launch.poll())
 
-    def test_takes_verdicts_of_its_own_detector_alone(self):
-        """A detector's status counts the readers of its verdicts: its own integrator is one of the first detector's alone."""
+    def test_exchanges_verdicts_and_attitudes_of_its_lane_alone(self):
+        """A status counts the readers of a service's samples: its own lane's other half is one of the first lane's alone."""
         self.start("quorient", "launch", CONFIGURATIONS / "demo.yaml", "--domain", self.domain, *one_vendor("cyclonedds"),
                    *settings(LANE, "source.duration_s=60", "source.faults=[]", "expect=null"))
         self.eventually(lambda: self.frames_of("attitude-a") > 400, "the lane handles frames")
-        readers = self.readers_of_verdicts()
+        readers = self.readers()
         self.assertGreaterEqual(readers["fdi-b"], 4, "two integrators and two voters")
         self.assertEqual(readers["fdi-a"], readers["fdi-b"] + 1)
+        self.assertGreaterEqual(readers["attitude-b"], 4, "two detectors and two voters")
+        self.assertEqual(readers["attitude-a"], readers["attitude-b"] + 1)
 
-    def test_separate_processes_take_verdicts_of_everybody(self):
+    def test_separate_processes_exchange_them_with_everybody(self):
         self.start("quorient", "launch", CONFIGURATIONS / "demo.yaml", "--domain", self.domain, *one_vendor("cyclonedds"),
                    *settings("source.duration_s=60", "source.faults=[]", "expect=null"))
         self.eventually(lambda: self.frames_of("attitude-a") > 400, "the lane handles frames")
-        readers = self.readers_of_verdicts()
+        readers = self.readers()
         self.assertEqual(readers["fdi-a"], readers["fdi-b"])
+        self.assertEqual(readers["attitude-a"], readers["attitude-b"])
 
-    def readers_of_verdicts(self):
+    def readers(self):
         echo = self.run_program("quorient", "echo", "status", "--count", 40, "--json", "--timeout", 20, "--domain", self.domain, timeout=40)
         return {status["name"]: status["matched"] for status in map(json.loads, echo.stdout.splitlines())}
 

@@ -29,7 +29,7 @@ tl::expected<host::Process, std::string> find_process(const system::System& syst
         case ServiceRole::sensor:
             return sensor::find_process(system, name);
         case ServiceRole::detector:
-            return detector::find_process(system, name);
+            return detector::find_composed(system, name, names);
         case ServiceRole::integrator:
             return integrator::find_composed(system, name, names);
         default:

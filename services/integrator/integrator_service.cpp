@@ -34,7 +34,7 @@ IntegratorService::IntegratorService(const system::IntegratorProcess& settings, 
     loop.on(bus.subscribe(bus::topics::cluster), [this](const ClusterDescription& description) { on_description(description); });
     loop.on(bus.subscribe(bus::topics::voter_output), [this](const VotedAttitude& voted) { on_voted(voted); });
     node_.on_order({CommandAction::reset_attitude}, [this](const FaultCommand& command) { on_command(command); });
-    verdicts_ = &loop.on(bus.subscribe(bus::topics::verdict, settings.verdicts_from), [this](const FaultVerdict& verdict) { on_verdict(verdict); });
+    verdicts_ = &loop.on(bus.subscribe(bus::topics::verdict, {.reach = settings.verdicts_from}), [this](const FaultVerdict& verdict) { on_verdict(verdict); });
     frames_ = &loop.on(bus.subscribe(bus::topics::frame), [this](const SensorFrame& frame) { on_frame(frame); });
     node_.watch(
         bus::topics::frame.spec.name, [this] { return frames_->status(); }, true);

@@ -35,7 +35,7 @@ private:
         written.insert(topic.name);
         return std::make_unique<Silent>();
     }
-    std::unique_ptr<bus::Reader> make_reader(const bus::TopicSpec& topic) override
+    std::unique_ptr<bus::Reader> make_reader(const bus::TopicSpec& topic, const bus::ReaderOptions&) override
     {
         read.insert(topic.name);
         return std::make_unique<Silent>();

@@ -36,7 +36,8 @@ VoterService::VoterService(const system::VoterProcess& settings, bus::Bus& bus, 
         brain_.on_other_voter(output, now());
         drain();
     });
-    loop.on(bus.subscribe(bus::topics::verdict), [this, now](const FaultVerdict& verdict) {
+    // A verdict counts when the attitudes of its frame come, and is taken before them.
+    loop.on(bus.subscribe(bus::topics::verdict, {.wake = bus::Wake::with_others}), [this, now](const FaultVerdict& verdict) {
         brain_.on_verdict(verdict, now());
         drain();
     });

@@ -141,7 +141,7 @@ TEST_P(ComposedBus, gives_a_subscriber_of_this_process_nothing_from_outside)
 {
     auto publisher = composed->advertise(topics::verdict);
     auto far_publisher = other->advertise(topics::verdict);
-    auto inner = composed->subscribe(topics::verdict, Reach::process);
+    auto inner = composed->subscribe(topics::verdict, {.reach = Reach::process});
     auto anywhere = composed->subscribe(topics::verdict);
     ASSERT_TRUE(eventually([&] { return anywhere.status().matched == 2 && far_publisher.status().matched == 1; }));
     EXPECT_EQ(inner.status().matched, 1U);

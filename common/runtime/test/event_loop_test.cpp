@@ -108,7 +108,7 @@ public:
 
 private:
     std::unique_ptr<bus::Writer> make_writer(const bus::TopicSpec&, const bus::WriterOptions&) override { return nullptr; }
-    std::unique_ptr<bus::Reader> make_reader(const bus::TopicSpec&) override { return nullptr; }
+    std::unique_ptr<bus::Reader> make_reader(const bus::TopicSpec&, const bus::ReaderOptions&) override { return nullptr; }
 
     VirtualClock& clock_;
 };

@@ -189,18 +189,17 @@ private:
         return std::make_unique<ComposedWriter>(state_, std::move(writer), topic);
     }
 
-    std::unique_ptr<Reader> make_reader(const TopicSpec& topic) override
+    std::unique_ptr<Reader> make_reader(const TopicSpec& topic, const ReaderOptions& options) override
     {
-        if (!is_handed_over(topic)) return outside_->make_reader(topic);
-        return std::make_unique<ComposedReader>(state_, feed_for(topic), topic);
+        if (!is_handed_over(topic)) return outside_->make_reader(topic, options);
+        return std::make_unique<ComposedReader>(state_, options.reach == Reach::process ? no_feed() : feed_for(topic), topic);
     }
 
-    std::unique_ptr<Reader> make_inner_reader(const TopicSpec& topic) override
+    static std::shared_ptr<Feed> no_feed()
     {
-        if (!is_handed_over(topic)) return outside_->make_reader(topic);
         auto feed = std::make_shared<Feed>();
         feed->reader = std::make_unique<NothingOutside>();
-        return std::make_unique<ComposedReader>(state_, std::move(feed), topic);
+        return feed;
     }
 
     /// Orders are not shared: a service asks for the sender of the one that it has taken.
@@ -210,7 +209,7 @@ private:
         auto feed = known.lock();
         if (feed && feed->looks == 0 && topic.type != TypeId::fault_command) return feed;
         feed = std::make_shared<Feed>();
-        feed->reader = outside_->make_reader(topic);
+        feed->reader = outside_->make_reader(topic, {});
         known = feed;
         return feed;
     }

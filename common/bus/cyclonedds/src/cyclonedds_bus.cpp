@@ -280,7 +280,7 @@ private:
         return std::make_unique<CycloneWriter>(std::move(writer), topic, asked);
     }
 
-    std::unique_ptr<Reader> make_reader(const TopicSpec& topic) override
+    std::unique_ptr<Reader> make_reader(const TopicSpec& topic, const ReaderOptions& options) override
     {
         const auto asked = asked_for(topic, settings_.transport);
         const auto qos = to_qos(topic.qos, nullptr, asked);
@@ -288,11 +288,16 @@ private:
         // By iceoryx own samples still arrive, so the reader looks at each sample's writer, too.
         if (skips) dds_qset_ignorelocal(qos.get(), DDS_IGNORELOCAL_PARTICIPANT);
         auto reader = checked(dds_create_reader(participant_.handle(), topic_of(topic), qos.get(), nullptr), topic.name);
+        if (options.wake == Wake::at_once) wait_for(reader, topic);
+        return std::make_unique<CycloneReader>(std::move(reader), topic.type, asked, settings_.security.has_value(),
+                                               skips ? &skipped_ : nullptr, refusals_);
+    }
+
+    void wait_for(const Entity& reader, const TopicSpec& topic)
+    {
         const auto condition = dds_create_readcondition(reader.handle(), DDS_ANY_STATE);
         if (condition < 0 || dds_waitset_attach(waitset_.handle(), condition, 0) < 0)
             throw Error(fmt::format("Cyclone DDS: {}: cannot wait for data", topic.name));
-        return std::make_unique<CycloneReader>(std::move(reader), topic.type, asked, settings_.security.has_value(),
-                                               skips ? &skipped_ : nullptr, refusals_);
     }
 
     static dds_instance_handle_t instance_of(const Entity& entity)

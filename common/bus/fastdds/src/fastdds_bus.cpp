@@ -165,8 +165,9 @@ GuidPrefix prefix_of(const dds::InstanceHandle_t& endpoint)
 
 class FastReader final : public Reader {
 public:
+    /// @param waitset  wakes for its samples; none: they wake nobody
     /// @param own  counts this reader, where it skips the samples of its own bus
-    FastReader(dds::Subscriber* subscriber, dds::DataReader* reader, dds::WaitSet& waitset, dds::TypeSupport type, const TopicSpec& topic,
+    FastReader(dds::Subscriber* subscriber, dds::DataReader* reader, dds::WaitSet* waitset, dds::TypeSupport type, const TopicSpec& topic,
                Transports transports, const fastdds::Peers& peers, std::shared_ptr<OwnEndpoints> own)
         : subscriber_(subscriber),
           reader_(reader),
@@ -181,12 +182,12 @@ public:
     {
         if (own_) ++own_->readers;
         reader_->get_statuscondition().set_enabled_statuses(dds::StatusMask::data_available());
-        waitset_.attach_condition(reader_->get_statuscondition());
+        if (waitset_) waitset_->attach_condition(reader_->get_statuscondition());
     }
     ~FastReader() override
     {
         if (own_) --own_->readers;
-        waitset_.detach_condition(reader_->get_statuscondition());
+        if (waitset_) waitset_->detach_condition(reader_->get_statuscondition());
         subscriber_->delete_datareader(reader_);
         type_.delete_data(sample_);
     }
@@ -226,7 +227,7 @@ private:
 
     dds::Subscriber* subscriber_;
     dds::DataReader* reader_;
-    dds::WaitSet& waitset_;
+    dds::WaitSet* waitset_;
     dds::TypeSupport type_;
     void* sample_;
     TopicSpec topic_;
@@ -309,7 +310,7 @@ private:
         return std::make_unique<FastWriter>(publisher_, writer, type, topic, transports_, own_endpoints_of(topic));
     }
 
-    std::unique_ptr<Reader> make_reader(const TopicSpec& topic) override
+    std::unique_ptr<Reader> make_reader(const TopicSpec& topic, const ReaderOptions& options) override
     {
         dds::DataReaderQos qos = subscriber_->get_default_datareader_qos();
         apply(topic.qos, settings_, qos);
@@ -322,7 +323,8 @@ private:
         auto [type, entity] = topic_of(topic);
         auto* reader = subscriber_->create_datareader(entity, qos);
         if (!reader) throw Error(fmt::format("Fast DDS: cannot read {}", topic.name));
-        return std::make_unique<FastReader>(subscriber_, reader, waitset_, type, topic, transports_, *peers_, own_endpoints_of(topic));
+        auto* waitset = options.wake == Wake::at_once ? &waitset_ : nullptr;
+        return std::make_unique<FastReader>(subscriber_, reader, waitset, type, topic, transports_, *peers_, own_endpoints_of(topic));
     }
 
     /// @returns nothing where readers of this topic receive what their own bus writes

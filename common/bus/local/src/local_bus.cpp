@@ -116,7 +116,10 @@ private:
     {
         return std::make_unique<LocalWriter>(state_, topic);
     }
-    std::unique_ptr<Reader> make_reader(const TopicSpec& topic) override { return std::make_unique<LocalReader>(state_, topic); }
+    std::unique_ptr<Reader> make_reader(const TopicSpec& topic, const ReaderOptions&) override
+    {
+        return std::make_unique<LocalReader>(state_, topic);
+    }
 
     std::shared_ptr<LocalHub::State> state_;
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "quorient/bus/reach.hpp"
+#include "quorient/bus/reader_options.hpp"
 #include "quorient/bus/refusals.hpp"
 #include "quorient/bus/sender.hpp"
 #include "quorient/bus/settings.hpp"
@@ -93,9 +93,9 @@ public:
 
     /// @throws Error where the vendor refuses the entity.
     template <class Message>
-    Subscription<Message> subscribe(const Topic<Message>& topic, Reach reach = Reach::anywhere)
+    Subscription<Message> subscribe(const Topic<Message>& topic, const ReaderOptions& options = {})
     {
-        return Subscription<Message>{reach == Reach::process ? make_inner_reader(topic.spec) : make_reader(topic.spec)};
+        return Subscription<Message>{make_reader(topic.spec, options)};
     }
 
     /// Blocks until a reader of this bus may have data, or the time is over. May return early.
@@ -112,8 +112,7 @@ public:
 
     // Endpoints without their type: for advertise(), subscribe(), and a bus that is made of another one.
     virtual std::unique_ptr<Writer> make_writer(const TopicSpec& topic, const WriterOptions& options) = 0;
-    virtual std::unique_ptr<Reader> make_reader(const TopicSpec& topic) = 0;
-    virtual std::unique_ptr<Reader> make_inner_reader(const TopicSpec& topic) { return make_reader(topic); }
+    virtual std::unique_ptr<Reader> make_reader(const TopicSpec& topic, const ReaderOptions& options) = 0;
 };
 
 /// Joins the bus that `settings` names. Vendor::local makes a bus of its own (see local_bus.hpp for a shared one).

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "quorient/attitude/integrator_settings.hpp"
-#include "quorient/bus/reach.hpp"
+#include "quorient/bus/reader_options.hpp"
 #include "quorient/bus/settings.hpp"
 #include "quorient/calibration/cluster_file.hpp"
 #include "quorient/configuration/key.hpp"
@@ -98,6 +98,7 @@ struct DetectorProcess {
     ProcessSettings process;
     std::uint32_t lane = 0;
     std::uint32_t detector = 0;
+    bus::Reach attitudes_from = bus::Reach::anywhere;
     SensorKind kind = SensorKind::gyro;
     fdi::DetectorSettings detection;
     std::optional<fdi::ObserverSettings> observers;  ///< for a vessel, in place of `detection`
