@@ -35,7 +35,7 @@ DetectorService::DetectorService(const system::DetectorProcess& settings, bus::B
         intake_.describe(description);
         handle_accepted();
     });
-    // Of use with the next frame, not before.
+    // An attitude is of use with the next frame, not before.
     loop.on(bus.subscribe(bus::topics::attitude, {settings.attitudes_from, bus::Wake::with_others}), [this](const AttitudeState& attitude) { on_lane_attitude(attitude); });
     loop.on(bus.subscribe(bus::topics::voter_output), [this](const VotedAttitude& voted) { on_voted(voted); });
     node_.on_order({CommandAction::readmit}, [this](const FaultCommand& command) { on_command(command); });

@@ -79,13 +79,14 @@ std::vector<std::uint64_t> each_once(std::uint64_t last = samples)
 
 class ComposedBus : public testing::TestWithParam<std::tuple<Vendor, Vendor>> {
 protected:
-    /// Polls until the condition holds; waits on the bus, not on the clock.
+    /// Polls until the condition holds, each time as a new round of the composed bus; waits on the other bus, not on the clock.
     template <class Condition>
     bool eventually(Condition condition)
     {
         const auto deadline = Clock::now() + patience;
         while (!condition()) {
             if (Clock::now() > deadline) return false;
+            composed->flush();
             other->wait(1'000'000);
         }
         return true;

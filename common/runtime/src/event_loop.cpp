@@ -54,6 +54,7 @@ bool EventLoop::dispatch()
     for (auto& input : inputs_) any = input->poll() || any;
     any = fire_timers() || any;
     for (auto& handler : after_round_) handler();
+    bus_.flush();
     return any;
 }
 

@@ -3,6 +3,7 @@
 #include "quorient/bus/local_bus.hpp"
 
 #include <gtest/gtest.h>
+#include <string>
 #include <vector>
 
 namespace quorient::runtime {
@@ -165,6 +166,34 @@ TEST_F(Loop, ends_when_asked_to_stop)
 {
     stop = true;
     EXPECT_EQ(loop.run(), 0);
+}
+
+/// Keeps samples back until a round is over.
+class KeepingBus final : public bus::Bus {
+public:
+    explicit KeepingBus(std::vector<std::string>& calls) : calls_(calls) {}
+
+    void flush() override { calls_.emplace_back("flush"); }
+    void wait(std::int64_t /*timeout_ns*/) override {}
+    Vendor vendor() const override { return Vendor::local; }
+    std::unique_ptr<bus::Writer> make_writer(const bus::TopicSpec& /*topic*/, const bus::WriterOptions& /*options*/) override { return nullptr; }
+    std::unique_ptr<bus::Reader> make_reader(const bus::TopicSpec& /*topic*/, const bus::ReaderOptions& /*options*/) override { return nullptr; }
+
+private:
+    std::vector<std::string>& calls_;
+};
+
+TEST(Round, ends_with_what_the_bus_keeps_back_though_the_loop_does_not_wait)
+{
+    std::vector<std::string> calls;
+    KeepingBus bus{calls};
+    VirtualClock clock;
+    std::atomic<bool> stop{false};
+    EventLoop loop{bus, clock, stop};
+    loop.timer([&] { calls.emplace_back("timer"); }).set(0);
+    loop.after_round([&] { calls.emplace_back("after"); });
+    loop.dispatch();
+    EXPECT_EQ(calls, (std::vector<std::string>{"timer", "after", "flush"}));
 }
 
 }  // namespace

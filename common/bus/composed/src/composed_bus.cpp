@@ -30,7 +30,8 @@ struct Channel {
 
 struct State {
     std::map<std::string, Channel> channels;
-    std::size_t waiting = 0;  ///< samples in the readers' queues, of all topics
+    std::size_t waiting = 0;               ///< samples in the readers' queues, of all topics
+    std::vector<ComposedWriter*> keeping;  ///< have samples for outside; who has kept them longest comes first
 };
 
 /// A reader of the vendor for several readers of this process, which were all there before its first sample was taken.
@@ -80,18 +81,31 @@ public:
         : state_(std::move(state)),
           channel_(state_->channels[topic.name]),
           outside_(std::move(outside)),
-          history_(topic.size, topic.qos.transient_local ? static_cast<std::size_t>(topic.qos.depth) : 0)
+          history_(topic.size, topic.qos.transient_local ? static_cast<std::size_t>(topic.qos.depth) : 0),
+          kept_(topic.size, writers_of_a_topic * static_cast<std::size_t>(topic.qos.depth))
     {
         channel_.writers.push_back(this);
     }
-    ~ComposedWriter() override { std::erase(channel_.writers, this); }
+    ~ComposedWriter() override
+    {
+        send_kept();
+        std::erase(state_->keeping, this);
+        std::erase(channel_.writers, this);
+    }
 
     bool write(const void* message) override
     {
-        const bool taken = outside_->write(message);
         for (auto* reader : channel_.readers) reader->push(message);
         if (keeps_history()) history_.push(message);
-        return taken;
+        if (channel_.readers.empty() && kept_.count() == 0) return outside_->write(message);
+        keep(message);
+        return !std::exchange(refused_, false);
+    }
+
+    void send_kept()
+    {
+        for (std::size_t place = 0; place < kept_.count(); ++place) refused_ = !outside_->write(kept_.at(place)) || refused_;
+        kept_.clear();
     }
 
     void assert_liveliness() override { outside_->assert_liveliness(); }
@@ -112,10 +126,19 @@ public:
 private:
     bool keeps_history() const { return history_.most() > 0; }
 
+    void keep(const void* message)
+    {
+        if (kept_.count() == 0) state_->keeping.push_back(this);
+        if (kept_.count() == kept_.most()) send_kept();
+        kept_.push(message);
+    }
+
     std::shared_ptr<State> state_;
     Channel& channel_;
     std::unique_ptr<Writer> outside_;
     SampleQueue history_;
+    SampleQueue kept_;      ///< for outside, until the round is over
+    bool refused_ = false;  ///< by the vendor, a kept sample of which the caller has not heard yet
 };
 
 ComposedReader::ComposedReader(std::shared_ptr<State> state, std::shared_ptr<Feed> feed, const TopicSpec& topic)
@@ -174,7 +197,17 @@ public:
 
     void wait(std::int64_t timeout_ns) override
     {
+        flush();
         if (state_->waiting == 0) outside_->wait(timeout_ns);
+    }
+
+    void flush() override
+    {
+        while (!state_->keeping.empty()) {
+            auto* writer = state_->keeping.back();
+            state_->keeping.pop_back();
+            writer->send_kept();
+        }
     }
 
     Vendor vendor() const override { return outside_->vendor(); }
@@ -186,6 +219,7 @@ private:
     {
         auto writer = outside_->make_writer(topic, options);
         if (!is_handed_over(topic)) return writer;
+        state_->keeping.reserve(++writers_);
         return std::make_unique<ComposedWriter>(state_, std::move(writer), topic);
     }
 
@@ -217,6 +251,7 @@ private:
     std::unique_ptr<Bus> outside_;
     std::shared_ptr<State> state_ = std::make_shared<State>();
     std::map<std::string, std::weak_ptr<Feed>> feeds_;
+    std::size_t writers_ = 0;  ///< ever made
 };
 
 tl::expected<std::unique_ptr<Bus>, std::string> open_vendor(const Settings& settings)
@@ -233,7 +268,12 @@ tl::expected<std::unique_ptr<Bus>, std::string> open_composed(const Settings& se
     if (const auto found = problems(settings); !found.empty()) return tl::make_unexpected(fmt::format("{}", fmt::join(found, "\n")));
     auto outside = open_vendor(settings);
     if (!outside) return tl::make_unexpected(outside.error());
-    return std::make_unique<ComposedBus>(std::move(*outside));
+    return compose(std::move(*outside));
+}
+
+std::unique_ptr<Bus> compose(std::unique_ptr<Bus> outside)
+{
+    return std::make_unique<ComposedBus>(std::move(outside));
 }
 
 }  // namespace quorient::bus

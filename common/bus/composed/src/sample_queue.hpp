@@ -16,6 +16,8 @@ public:
     /// @returns false when there is none.
     bool pop(void* sample);
 
+    void clear() { count_ = 0; }
+
     std::size_t count() const { return count_; }
     std::size_t most() const { return most_; }
 

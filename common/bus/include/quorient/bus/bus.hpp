@@ -98,6 +98,9 @@ public:
         return Subscription<Message>{make_reader(topic.spec, options)};
     }
 
+    /// Gives out what the bus keeps back while a round of the event loop lasts. The loop calls it after each round; wait() does the same.
+    virtual void flush() {}
+
     /// Blocks until a reader of this bus may have data, or the time is over. May return early.
     virtual void wait(std::int64_t timeout_ns) = 0;
 
