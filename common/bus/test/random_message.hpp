@@ -1,5 +1,6 @@
 #pragma once
 
+#include "quorient/bus/topics.hpp"
 #include "quorient/messages/fields.hpp"
 
 #include <array>
@@ -35,6 +36,14 @@ Message random_message(std::mt19937_64& random)
     Message message;
     for_each_field(message, [&](const char*, auto& value) { randomise(value, random); });
     return message;
+}
+
+/// The message of a topic that two processes know without an exchange.
+template <class Message>
+Message message_for(const Topic<Message>& topic, std::uint64_t seed)
+{
+    std::mt19937_64 random{seed + static_cast<std::uint64_t>(topic.spec.type)};
+    return random_message<Message>(random);
 }
 
 }  // namespace quorient::bus

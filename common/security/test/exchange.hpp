@@ -1,7 +1,6 @@
 // What the secured pairs' two processes share.
 #pragma once
 
-#include "../../bus/test/random_message.hpp"
 #include "quorient/bus/bus.hpp"
 #include "quorient/security/identity.hpp"
 
@@ -12,14 +11,6 @@
 #include <string>
 
 namespace quorient::security {
-
-/// The message of a topic that both know without an exchange.
-template <class Message>
-Message message_for(const bus::Topic<Message>& topic, std::uint64_t seed)
-{
-    std::mt19937_64 random{seed + static_cast<std::uint64_t>(topic.spec.type)};
-    return bus::random_message<Message>(random);
-}
 
 /// @throws bus::Error where the identity is not there, or the vendor refuses it.
 inline std::unique_ptr<bus::Bus> join(const std::filesystem::path& keys, const std::string& name, Vendor vendor, std::uint32_t domain,

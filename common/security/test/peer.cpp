@@ -1,6 +1,7 @@
 // The other process of the secured pairs: publishes every topic until it is ended.
 // usage: security_peer KEYS VENDOR DOMAIN LEVEL SEED
 
+#include "../../bus/test/random_message.hpp"
 #include "exchange.hpp"
 
 #include <atomic>
@@ -22,7 +23,7 @@ void publish_all(bus::Bus& bus, std::uint64_t seed)
     const auto advertise = [&](const auto& topic) {
         using Message = typename std::decay_t<decltype(topic)>::Message;
         auto publisher = std::make_shared<bus::Publisher<Message>>(bus.advertise(topic));
-        publications.push_back([publisher, message = security::message_for(topic, seed)] { publisher->publish(message); });
+        publications.push_back([publisher, message = bus::message_for(topic, seed)] { publisher->publish(message); });
     };
     std::apply([&](const auto&... topic) { (advertise(topic), ...); }, bus::topics::all);
     std::puts("here");

@@ -1,6 +1,7 @@
 // Every topic, between processes of either vendor, in either order of starting: signed, and encrypted. Either is a process of its own, since
 // Cyclone DDS has one set of permissions for all participants of a process.
 
+#include "../../bus/test/random_message.hpp"
 #include "exchange.hpp"
 #include "quorient/security/authority.hpp"
 #include "temporary_directory.hpp"
@@ -95,7 +96,7 @@ public:
         const auto subscribe = [&](const auto& topic) {
             using Message = typename std::decay_t<decltype(topic)>::Message;
             auto subscription = std::make_shared<bus::Subscription<Message>>(bus.subscribe(topic));
-            const auto expected = message_for(topic, seed);
+            const auto expected = bus::message_for(topic, seed);
             missing_.insert(topic.spec.name);
             takes_.push_back([this, subscription, expected, name = topic.spec.name] {
                 Message message;
