@@ -2,8 +2,6 @@
 
 #include "integrator_service.hpp"
 
-#include <algorithm>
-
 namespace quorient::integrator {
 
 tl::expected<host::Process, std::string> find_process(const system::System& system, const std::string& name)
@@ -17,10 +15,7 @@ tl::expected<host::Process, std::string> find_composed(const system::System& sys
 {
     auto settings = system.integrator(name);
     if (!settings) return tl::unexpected(settings.error());
-    const bool detector_beside = std::ranges::any_of(system.lanes, [&](const system::LaneProcess& lane) {
-        return lane.detector.detector == settings->detector && std::ranges::find(names, lane.detector.process.node.name) != names.end();
-    });
-    if (detector_beside) settings->verdicts_from = bus::Reach::process;
+    if (system.holds_lane(settings->detector, names)) settings->verdicts_from = bus::Reach::process;
     return host::process_of<IntegratorService>(*settings);
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <algorithm>
 #include <set>
 #include <string>
 
@@ -43,6 +44,14 @@ std::string obstacle(const ProcessSettings& process)
 }
 
 }  // namespace
+
+bool System::holds_lane(std::uint32_t detector, const std::vector<std::string>& names) const
+{
+    const auto named = [&](const ProcessSettings& process) { return std::ranges::find(names, process.node.name) != names.end(); };
+    return std::ranges::any_of(lanes, [&](const LaneProcess& lane) {
+        return lane.detector.detector == detector && named(lane.detector.process) && named(lane.integrator.process);
+    });
+}
 
 std::optional<Discord> System::discord_of(const std::vector<std::string>& names) const
 {

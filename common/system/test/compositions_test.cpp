@@ -23,6 +23,20 @@ TEST(Compositions, of_any_processes_of_one_bus_are_accepted)
     EXPECT_EQ(with_compositions("[[voter-1, sensor, fdi-a, attitude-a, fdi-b, attitude-b]]"), "accepted");
 }
 
+TEST(Compositions, hold_a_lane_with_both_of_its_halves_alone)
+{
+    const TemporaryFile file(simulation_file);
+    const auto system = load(file.name());
+    ASSERT_TRUE(system) << system.error();
+    const auto detector = system->detector("fdi-a")->detector;
+    EXPECT_TRUE(system->holds_lane(detector, {"attitude-a", "voter-1", "fdi-a"}));
+    EXPECT_FALSE(system->holds_lane(detector, {"fdi-a"}));
+    EXPECT_FALSE(system->holds_lane(detector, {"attitude-a"}));
+    EXPECT_FALSE(system->holds_lane(detector, {"fdi-a", "attitude-b"}));
+    EXPECT_FALSE(system->holds_lane(detector, {"fdi-b", "attitude-b"}));
+    EXPECT_FALSE(system->holds_lane(detector, {}));
+}
+
 TEST(Compositions, without_any_every_process_runs_alone)
 {
     const TemporaryFile file(simulation_file);

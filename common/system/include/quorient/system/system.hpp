@@ -192,6 +192,9 @@ struct System {
     /// What keeps these processes from running in one; nothing if they can.
     std::optional<Discord> discord_of(const std::vector<std::string>& names) const;
 
+    /// Whether these names hold the whole lane of this detector: the detector and its integrator.
+    bool holds_lane(std::uint32_t detector, const std::vector<std::string>& names) const;
+
     /// One for each lane; none where the unit gives no attitude.
     std::vector<const IntegratorProcess*> integrators() const;
 
