@@ -101,7 +101,8 @@ public:
     /// Gives out what the bus keeps back while a round of the event loop lasts. The loop calls it after each round; wait() does the same.
     virtual void flush() {}
 
-    /// Blocks until a reader of this bus may have data, or the time is over. May return early.
+    /// Blocks until a reader of this bus may have data, or the time is over. May return early: Cyclone DDS does not wait where no
+    /// subscription could end it.
     virtual void wait(std::int64_t timeout_ns) = 0;
 
     virtual Vendor vendor() const = 0;
