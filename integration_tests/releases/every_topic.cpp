@@ -113,7 +113,7 @@ int main(int argc, char** argv)
     CLI11_PARSE(app, argc, argv);
     const auto vendor = bus::vendor_from(options.vendor);
     if (!vendor) {
-        std::fprintf(stderr, "no vendor '%s'\n", options.vendor.c_str());
+        std::fprintf(stderr, "no vendor '%s': fastdds or cyclonedds\n", options.vendor.c_str());
         return 2;
     }
     bus::Settings settings;

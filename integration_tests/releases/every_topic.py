@@ -2,7 +2,10 @@
 
     sudo unshare -n sh -c 'ip link set lo up; python3 -m integration_tests.releases.every_topic'
 
-Both releases need `quorient-every-topic`: it is built by name, in the other one after `deploy/release-root RELEASE`."""
+Both releases need the program, which is built by name:
+
+    cmake --build --preset release --target quorient-every-topic
+    deploy/release-root RELEASE cmake --build --preset release --target quorient-every-topic"""
 import itertools
 import os
 import random
@@ -12,7 +15,7 @@ import time
 
 from integration_tests.harness.debian import own_release
 from integration_tests.harness.processes import BIN, ROOT
-from integration_tests.releases.mixed_system import OTHER
+from integration_tests.releases.mixed_system import OTHER, caches
 
 PROGRAM = "quorient-every-topic"
 VENDORS = ("fastdds", "cyclonedds")
@@ -50,6 +53,9 @@ def main():
     other = OTHER.get(own_release())
     if other is None or os.geteuid() != 0:
         sys.exit("needs root, and one of the releases " + ", ".join(OTHER))
+    for program in (BIN / PROGRAM, caches() / other / "build/release/bin" / PROGRAM):
+        if not program.exists():
+            sys.exit(f"no {program}; the commands that build it:\n{__doc__}")
     seed = random.randrange(2**32)
     print(f"seed {seed}\n\n| writer | reader | first | received |\n|---|---|---|---|")
     failed = 0
